@@ -1,0 +1,1 @@
+//! A firmware's receiving side on the host.

@@ -1,0 +1,1 @@
+//! A rate table in software.
