@@ -1,0 +1,299 @@
+//! Packets out of a stream of bytes, however it is cut up.
+
+use super::{
+    CRC_LEN, Header, MAX_LEN, Message, Received, SIGNATURE_LEN, Version, checksum, crc_extra,
+};
+use crate::bytes;
+use crate::error::Error;
+
+/// The longest packet and the byte after it.
+const HELD_LEN: usize = MAX_LEN + 1;
+
+/// `incompatible` bit: a signature follows the checksum.
+const SIGNED: u8 = 0x01;
+
+/// Finds packets in a stream; holds what has come of the next one.
+///
+/// After damage it looks on from the byte behind the false start, so that a damaged length hides
+/// no packet. Messages that are not known here cannot be checked: they are believed only where a
+/// packet is due and another follows, so each is reported when the byte after it comes.
+#[derive(Debug, Clone)]
+pub struct Decoder {
+    held: [u8; HELD_LEN],
+    len: usize,
+    in_step: bool,
+}
+
+/// What the held bytes are.
+enum Verdict {
+    /// The start of something: more bytes will tell.
+    Wait,
+    /// No packet starts at the first byte.
+    Not(Error),
+    /// A packet of so many bytes.
+    Packet(Received, usize),
+}
+
+/// What the bytes before the payload say.
+struct Start {
+    header: Header,
+    id: u32,
+    crc_at: usize,
+    end: usize,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Decoder {
+    /// A decoder that holds nothing.
+    pub const fn new() -> Self {
+        Self {
+            held: [0; HELD_LEN],
+            len: 0,
+            in_step: true,
+        }
+    }
+
+    /// Takes more of the stream and calls `on` with each packet that it completes.
+    ///
+    /// Damage is reported once, however many bytes it takes to be in step again:
+    /// [`Error::Checksum`], or [`Error::Malformed`] where no packet starts.
+    pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<Received, Error>)) {
+        for &byte in bytes {
+            self.held[self.len] = byte;
+            self.len += 1;
+            self.scan(false, &mut on);
+        }
+    }
+
+    /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
+    pub fn finish(&mut self, mut on: impl FnMut(Result<Received, Error>)) {
+        self.scan(true, &mut on);
+    }
+
+    /// Takes all that can be judged from the front of what is held.
+    fn scan(&mut self, at_end: bool, on: &mut impl FnMut(Result<Received, Error>)) {
+        while self.len > 0 {
+            match self.judge(at_end) {
+                Verdict::Wait => return,
+                Verdict::Not(error) => {
+                    if self.in_step {
+                        on(Err(error));
+                    }
+                    self.in_step = false;
+                    self.drop_false_start();
+                }
+                Verdict::Packet(received, len) => {
+                    on(Ok(received));
+                    self.in_step = true;
+                    self.drop_front(len);
+                }
+            }
+        }
+    }
+
+    /// Says what the first held byte starts.
+    fn judge(&self, at_end: bool) -> Verdict {
+        let held = &self.held[..self.len];
+        let short = if at_end {
+            Verdict::Not(Error::Malformed)
+        } else {
+            Verdict::Wait
+        };
+        let start = match start(held) {
+            Ok(Some(start)) => start,
+            Ok(None) => return short,
+            Err(error) => return Verdict::Not(error),
+        };
+        let extra = crc_extra(start.id);
+        if extra.is_none() && !self.in_step {
+            return Verdict::Not(Error::Malformed);
+        }
+        let Some(packet) = held.get(..start.end) else {
+            return short;
+        };
+        match extra {
+            Some(extra) => checked(&start, packet, extra),
+            None => unchecked(&start, held.get(start.end), at_end),
+        }
+    }
+
+    /// Drops the first byte and all up to the next that may start a packet.
+    fn drop_false_start(&mut self) {
+        let rest = &self.held[1..self.len];
+        let skip = rest
+            .iter()
+            .position(|&byte| Version::from_magic(byte).is_some());
+        self.drop_front(skip.map_or(self.len, |skip| skip + 1));
+    }
+
+    /// Drops bytes from the front.
+    fn drop_front(&mut self, count: usize) {
+        self.held.copy_within(count..self.len, 0);
+        self.len -= count;
+    }
+}
+
+/// Reads what comes before the payload; `None` if there are too few bytes yet.
+fn start(held: &[u8]) -> Result<Option<Start>, Error> {
+    let version = held.first().and_then(|&magic| Version::from_magic(magic));
+    let version = version.ok_or(Error::Malformed)?;
+    let (len, flags, [seq, system, component], id) = match (version, held) {
+        (Version::V1, &[_, len, seq, system, component, id, ..]) => {
+            (len, 0, [seq, system, component], u32::from(id))
+        }
+        (Version::V2, &[_, len, flags, _, seq, system, component, a, b, c, ..]) => (
+            len,
+            flags,
+            [seq, system, component],
+            u32::from_le_bytes([a, b, c, 0]),
+        ),
+        _ => return Ok(None),
+    };
+    if flags & !SIGNED != 0 {
+        return Err(Error::Malformed);
+    }
+    let crc_at = version.header_len() + usize::from(len);
+    let signature = if flags & SIGNED == 0 {
+        0
+    } else {
+        SIGNATURE_LEN
+    };
+    Ok(Some(Start {
+        header: Header {
+            version,
+            seq,
+            system,
+            component,
+        },
+        id,
+        crc_at,
+        end: crc_at + CRC_LEN + signature,
+    }))
+}
+
+/// A packet whose checksum can be checked.
+fn checked(start: &Start, packet: &[u8], extra: u8) -> Verdict {
+    let said: u16 = bytes::le(packet, start.crc_at..start.crc_at + CRC_LEN);
+    if checksum(&packet[1..start.crc_at], extra) != said {
+        return Verdict::Not(Error::Checksum);
+    }
+    let payload = &packet[start.header.version.header_len()..start.crc_at];
+    match Message::parse(start.id, payload) {
+        Ok(message) => Verdict::Packet(start.received(Some(message)), start.end),
+        Err(error) => Verdict::Not(error),
+    }
+}
+
+/// A packet that is believed because of what follows it.
+fn unchecked(start: &Start, following: Option<&u8>, at_end: bool) -> Verdict {
+    match following {
+        None if !at_end => Verdict::Wait,
+        Some(&byte) if Version::from_magic(byte).is_none() => Verdict::Not(Error::Malformed),
+        _ => Verdict::Packet(start.received(None), start.end),
+    }
+}
+
+impl Start {
+    /// The whole packet, given its message.
+    const fn received(&self, message: Option<Message>) -> Received {
+        Received {
+            header: self.header,
+            id: self.id,
+            message,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{encode, heartbeat, system_time};
+    use super::*;
+
+    /// A packet whose message id is not known here, its checksum arbitrary.
+    const UNKNOWN: [u8; 14] = [0xfd, 2, 0, 0, 9, 1, 1, 0xff, 0xff, 0, 7, 8, 0x12, 0x34];
+
+    fn two_packets(version: Version, out: &mut [u8; 2 * MAX_LEN]) -> (usize, usize) {
+        let header = |seq| Header {
+            version,
+            seq,
+            system: 1,
+            component: 2,
+        };
+        let beat = Message::Heartbeat(heartbeat::Repr {
+            custom_mode: 0xfe_fd,
+            mavlink_version: 3,
+            ..Default::default()
+        });
+        let time = Message::SystemTime(system_time::Repr {
+            time_unix_usec: 0,
+            time_boot_ms: 77,
+        });
+        let first = encode(&header(0), &beat, out).unwrap();
+        let second = encode(&header(1), &time, &mut out[first..]).unwrap();
+        (first, first + second)
+    }
+
+    #[test]
+    fn a_flipped_bit_anywhere_costs_one_packet_and_hides_no_other() {
+        for version in [Version::V1, Version::V2] {
+            let mut bytes = [0; 2 * MAX_LEN];
+            let (first, end) = two_packets(version, &mut bytes);
+            for bit in 0..first * 8 {
+                let mut hurt = bytes;
+                hurt[bit / 8] ^= 1 << (bit % 8);
+                let (mut beats, mut times) = (0, 0);
+                let mut decoder = Decoder::new();
+                let mut on = |received: Result<Received, Error>| match received
+                    .ok()
+                    .and_then(|received| received.message)
+                {
+                    Some(Message::Heartbeat(_)) => beats += 1,
+                    Some(Message::SystemTime(_)) => times += 1,
+                    _ => {}
+                };
+                decoder.feed(&hurt[..end], &mut on);
+                decoder.finish(&mut on);
+                assert_eq!((beats, times), (0, 1), "{version:?} bit {bit}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_unknown_message_is_reported_when_the_next_byte_comes() {
+        let mut bytes = [0; 2 * MAX_LEN];
+        let (_, end) = two_packets(Version::V2, &mut bytes);
+        let mut ids = [0; 4];
+        let mut count = 0;
+        let mut on = |received: Result<Received, Error>| {
+            ids[count] = received.unwrap().id;
+            count += 1;
+        };
+        let mut decoder = Decoder::new();
+        decoder.feed(&UNKNOWN, &mut on);
+        decoder.feed(&bytes[..end], &mut on);
+        decoder.feed(&UNKNOWN, &mut on);
+        decoder.finish(&mut on);
+        assert_eq!(ids, [0xffff, heartbeat::ID, system_time::ID, 0xffff]);
+    }
+
+    #[test]
+    fn damage_is_reported_once() {
+        let mut bytes = [0; 2 * MAX_LEN];
+        let (first, end) = two_packets(Version::V2, &mut bytes);
+        bytes[first - 1] ^= 1;
+        let (mut good, mut bad) = (0, 0);
+        Decoder::new().feed(&bytes[..end], |received| match received {
+            Ok(_) => good += 1,
+            Err(error) => {
+                assert_eq!(error, Error::Checksum);
+                bad += 1;
+            }
+        });
+        assert_eq!((good, bad), (1, 1));
+    }
+}

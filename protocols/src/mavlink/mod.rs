@@ -1,0 +1,252 @@
+//! `mavlink`: the messages of MAVLink 1 and 2 that a sensor emulator speaks.
+//!
+//! MAVLink 2: `FD | len u8 | incompatible u8 | compatible u8 | seq u8 | system u8 | component u8 |
+//! id u24 | payload | crc u16`, trailing zeros of the payload cut except for one byte.
+//! MAVLink 1: `FE | len u8 | seq u8 | system u8 | component u8 | id u8 | payload | crc u16`.
+//! The checksum (CRC-16/MCRF4XX) covers everything after the first byte and then `CRC_EXTRA`, a
+//! byte that stands for the message's list of fields. Numbers are little-endian.
+//!
+//! A new message is one file, its `mod` line and one line in the table below.
+//!
+//! ```
+//! use ratetable_protocols::mavlink::{self, Decoder, Header, Message, Version, heartbeat};
+//!
+//! let header = Header { version: Version::V2, seq: 0, system: 1, component: 1 };
+//! let message = Message::Heartbeat(heartbeat::Repr { mavlink_version: 3, ..Default::default() });
+//! let mut bytes = [0; mavlink::MAX_LEN];
+//! let len = mavlink::encode(&header, &message, &mut bytes)?;
+//!
+//! let mut back = None;
+//! Decoder::new().feed(&bytes[..len], |received| back = received.ok());
+//! assert_eq!(back.and_then(|received| received.message), Some(message));
+//! # Ok::<(), ratetable_protocols::Error>(())
+//! ```
+
+use crc::{CRC_16_MCRF4XX, Crc, Table};
+
+use crate::bytes;
+use crate::error::Error;
+
+pub mod attitude;
+pub mod attitude_quaternion;
+mod decoder;
+pub mod heartbeat;
+pub mod hil_sensor;
+pub mod system_time;
+
+pub use decoder::Decoder;
+
+static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_MCRF4XX);
+
+/// Bytes of the longest payload of any message.
+pub const MAX_PAYLOAD_LEN: usize = 255;
+
+/// Bytes of the longest packet, a MAVLink 2 signature included.
+pub const MAX_LEN: usize = Version::V2.header_len() + MAX_PAYLOAD_LEN + CRC_LEN + SIGNATURE_LEN;
+
+/// Bytes of checksum behind the payload.
+const CRC_LEN: usize = 2;
+
+/// Bytes of signature behind the checksum, where there is one.
+const SIGNATURE_LEN: usize = 13;
+
+/// The version of the framing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Version {
+    /// MAVLink 1: 8-bit message ids, no extension fields.
+    V1,
+    /// MAVLink 2.
+    #[default]
+    V2,
+}
+
+impl Version {
+    /// The first byte of a packet.
+    pub const fn magic(self) -> u8 {
+        match self {
+            Self::V1 => 0xfe,
+            Self::V2 => 0xfd,
+        }
+    }
+
+    /// The version that starts with this byte.
+    const fn from_magic(magic: u8) -> Option<Self> {
+        match magic {
+            0xfe => Some(Self::V1),
+            0xfd => Some(Self::V2),
+            _ => None,
+        }
+    }
+
+    /// Bytes before the payload.
+    pub const fn header_len(self) -> usize {
+        match self {
+            Self::V1 => 6,
+            Self::V2 => 10,
+        }
+    }
+}
+
+/// Who says it, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Header {
+    /// Version of the framing.
+    pub version: Version,
+    /// Counts every packet of this sender on the link, wrapping.
+    pub seq: u8,
+    /// The sender's system id.
+    pub system: u8,
+    /// The sender's component id.
+    pub component: u8,
+}
+
+/// A packet as it arrived.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Received {
+    /// Who says it, and how.
+    pub header: Header,
+    /// The message id.
+    pub id: u32,
+    /// The message; `None` if its id is not known here, and then its checksum is unchecked.
+    pub message: Option<Message>,
+}
+
+macro_rules! messages {
+    ($($(#[$doc:meta])* $name:ident($module:ident),)*) => {
+        /// A message of any id.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub enum Message {
+            $($(#[$doc])* $name($module::Repr),)*
+        }
+
+        impl Message {
+            /// The message id.
+            pub const fn id(&self) -> u32 {
+                match self { $(Self::$name(_) => $module::ID,)* }
+            }
+
+            /// The message's name in MAVLink's definitions, in lower case.
+            pub const fn name(&self) -> &'static str {
+                match self { $(Self::$name(_) => stringify!($module),)* }
+            }
+
+            /// Bytes of payload before trailing zeros are cut.
+            pub const fn buffer_len(&self, version: Version) -> usize {
+                match (self, version) {
+                    $((Self::$name(_), Version::V1) => $module::BASE_LEN,
+                    (Self::$name(_), Version::V2) => $module::LEN,)*
+                }
+            }
+
+            /// Reads a payload; what is cut off at its end is zero, what is more is ignored.
+            ///
+            /// # Errors
+            /// [`Error::Malformed`] if the id is not known here.
+            pub fn parse(id: u32, payload: &[u8]) -> Result<Self, Error> {
+                let mut whole = [0; MAX_PAYLOAD_LEN];
+                bytes::copy(payload, &mut whole);
+                match id {
+                    $($module::ID => {
+                        let payload = $module::Payload::new_checked(&whole[..$module::LEN])?;
+                        Ok(Self::$name($module::Repr::parse(&payload)))
+                    })*
+                    _ => Err(Error::Malformed),
+                }
+            }
+
+            /// Writes the payload, extension fields included, at the front of `whole`.
+            fn emit(&self, whole: &mut [u8; MAX_PAYLOAD_LEN]) -> Result<(), Error> {
+                match self {
+                    $(Self::$name(repr) => {
+                        let payload = &mut whole[..$module::LEN];
+                        repr.emit(&mut $module::Payload::new_checked(payload)?);
+                    })*
+                }
+                Ok(())
+            }
+        }
+
+        /// The checksum's last byte for a message id, where the id is known here.
+        pub const fn crc_extra(id: u32) -> Option<u8> {
+            match id {
+                $($module::ID => Some($module::CRC_EXTRA),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+messages! {
+    /// Who is there.
+    Heartbeat(heartbeat),
+    /// Date and time since boot.
+    SystemTime(system_time),
+    /// Attitude as Euler angles.
+    Attitude(attitude),
+    /// Attitude as a quaternion.
+    AttitudeQuaternion(attitude_quaternion),
+    /// The readings of an emulated vehicle.
+    HilSensor(hil_sensor),
+}
+
+/// The checksum of the bytes after the first one of a packet.
+fn checksum(after_magic: &[u8], crc_extra: u8) -> u16 {
+    let mut digest = CRC.digest();
+    digest.update(after_magic);
+    digest.update(&[crc_extra]);
+    digest.finalize()
+}
+
+/// Writes one packet and returns its length.
+///
+/// # Errors
+/// [`Error::BufferTooSmall`] if `out` cannot hold it ([`MAX_LEN`] bytes always can),
+/// [`Error::Version`] if the id does not fit MAVLink 1.
+pub fn encode(header: &Header, message: &Message, out: &mut [u8]) -> Result<usize, Error> {
+    let mut payload = [0; MAX_PAYLOAD_LEN];
+    message.emit(&mut payload)?;
+    let payload = &payload[..message.buffer_len(header.version)];
+    let payload = match header.version {
+        Version::V1 => payload,
+        Version::V2 => cut_zeros(payload),
+    };
+    let crc_at = header.version.header_len() + payload.len();
+    let needed = crc_at + CRC_LEN;
+    let packet = out
+        .get_mut(..needed)
+        .ok_or(Error::BufferTooSmall { needed })?;
+    put_header(header, message.id(), payload.len() as u8, packet)?;
+    packet[header.version.header_len()..crc_at].copy_from_slice(payload);
+    let extra = crc_extra(message.id()).unwrap_or_default();
+    let crc = checksum(&packet[1..crc_at], extra);
+    bytes::put_le(packet, crc_at..needed, crc);
+    Ok(needed)
+}
+
+/// A payload without its trailing zeros, but at least its first byte.
+fn cut_zeros(payload: &[u8]) -> &[u8] {
+    let last = payload.iter().rposition(|&byte| byte != 0).unwrap_or(0);
+    &payload[..payload.len().min(last + 1)]
+}
+
+/// Writes what comes before the payload.
+fn put_header(header: &Header, id: u32, len: u8, packet: &mut [u8]) -> Result<(), Error> {
+    let &Header {
+        version,
+        seq,
+        system,
+        component,
+    } = header;
+    let magic = version.magic();
+    match version {
+        Version::V1 => {
+            let id = u8::try_from(id).map_err(|_| Error::Version)?;
+            bytes::copy(&[magic, len, seq, system, component, id], packet);
+        }
+        Version::V2 => {
+            let [a, b, c, _] = id.to_le_bytes();
+            bytes::copy(&[magic, len, 0, 0, seq, system, component, a, b, c], packet);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! The golden vectors as values: read from the data files, one line a packet.
+#![allow(dead_code, reason = "each test file uses a part")]
+
+use ratetable_protocols::mavlink::{self, Message, Version};
+use ratetable_protocols::mpu::{self, Packet};
+use serde_json::Value;
+
+/// One golden packet: its JSON and its bytes.
+pub struct Vector {
+    pub json: Value,
+    pub bytes: Vec<u8>,
+}
+
+impl Vector {
+    pub fn name(&self) -> &str {
+        self.json["name"].as_str().unwrap()
+    }
+
+    pub fn hex(&self) -> &str {
+        self.json["hex"].as_str().unwrap()
+    }
+}
+
+/// The vectors of `mpu` or `mavlink`.
+pub fn vectors(format: &str) -> Vec<Vector> {
+    let path = format!("{}/vectors/{format}.json", env!("CARGO_MANIFEST_DIR"));
+    let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let packets = file["packets"].as_array().unwrap().iter().cloned();
+    packets
+        .map(|json| Vector {
+            bytes: unhex(json["hex"].as_str().unwrap()),
+            json,
+        })
+        .collect()
+}
+
+fn unhex(hex: &str) -> Vec<u8> {
+    let digits = hex.as_bytes().chunks(2);
+    digits
+        .map(|pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap())
+        .collect()
+}
+
+/// An integer of the JSON, whatever its type.
+pub fn int<T: TryFrom<i64>>(value: &Value) -> T {
+    let int = value
+        .as_i64()
+        .unwrap_or_else(|| panic!("{value} is not an integer"));
+    T::try_from(int).unwrap_or_else(|_| panic!("{value} does not fit"))
+}
+
+fn ints<T: TryFrom<i64>, const N: usize>(value: &Value) -> [T; N] {
+    std::array::from_fn(|i| int(&value[i]))
+}
+
+fn float(value: &Value) -> f32 {
+    value.as_f64().unwrap() as f32
+}
+
+fn floats<const N: usize>(value: &Value) -> [f32; N] {
+    std::array::from_fn(|i| float(&value[i]))
+}
+
+/// The `mpu` packet that a vector describes.
+pub fn mpu_packet(json: &Value) -> Packet {
+    let f = &json["fields"];
+    match json["type"].as_str().unwrap() {
+        "imu" => Packet::Imu(mpu::imu::Repr {
+            accel: ints(&f["accel"]),
+            temperature: int(&f["temperature"]),
+            gyro: ints(&f["gyro"]),
+        }),
+        "mag" => Packet::Mag(mpu::mag::Repr {
+            st1: int(&f["st1"]),
+            field: ints(&f["field"]),
+            st2: int(&f["st2"]),
+        }),
+        "gyro" => Packet::Gyro(mpu::gyro::Repr {
+            gyro: ints(&f["gyro"]),
+        }),
+        "accel" => Packet::Accel(mpu::accel::Repr {
+            accel: ints(&f["accel"]),
+        }),
+        "config" => Packet::Config(mpu::config::Repr {
+            who_am_i: int(&f["who_am_i"]),
+            smplrt_div: int(&f["smplrt_div"]),
+            config: int(&f["config"]),
+            gyro_config: int(&f["gyro_config"]),
+            accel_config: int(&f["accel_config"]),
+            mag_who: int(&f["mag_who"]),
+            cntl1: int(&f["cntl1"]),
+            asa: ints(&f["asa"]),
+        }),
+        "attitude" => Packet::Attitude(mpu::attitude::Repr {
+            clock_us: int(&f["clock_us"]),
+            q: floats(&f["q"]),
+        }),
+        other => panic!("no packet type {other}"),
+    }
+}
+
+/// The header that a `mavlink` vector describes.
+pub fn mavlink_header(json: &Value) -> mavlink::Header {
+    mavlink::Header {
+        version: match int::<u8>(&json["version"]) {
+            1 => Version::V1,
+            _ => Version::V2,
+        },
+        seq: int(&json["seq"]),
+        system: int(&json["system"]),
+        component: int(&json["component"]),
+    }
+}
+
+/// The message that a `mavlink` vector describes.
+pub fn mavlink_message(json: &Value) -> Message {
+    let f = &json["fields"];
+    match json["message"].as_str().unwrap() {
+        "heartbeat" => Message::Heartbeat(mavlink::heartbeat::Repr {
+            custom_mode: int(&f["custom_mode"]),
+            kind: int(&f["kind"]),
+            autopilot: int(&f["autopilot"]),
+            base_mode: int(&f["base_mode"]),
+            system_status: int(&f["system_status"]),
+            mavlink_version: int(&f["mavlink_version"]),
+        }),
+        "system_time" => Message::SystemTime(mavlink::system_time::Repr {
+            time_unix_usec: int(&f["time_unix_usec"]),
+            time_boot_ms: int(&f["time_boot_ms"]),
+        }),
+        "attitude" => Message::Attitude(mavlink::attitude::Repr {
+            time_boot_ms: int(&f["time_boot_ms"]),
+            roll: float(&f["roll"]),
+            pitch: float(&f["pitch"]),
+            yaw: float(&f["yaw"]),
+            angular_rate: floats(&f["angular_rate"]),
+        }),
+        "attitude_quaternion" => Message::AttitudeQuaternion(mavlink::attitude_quaternion::Repr {
+            time_boot_ms: int(&f["time_boot_ms"]),
+            q: floats(&f["q"]),
+            angular_rate: floats(&f["angular_rate"]),
+            repr_offset_q: floats(&f["repr_offset_q"]),
+        }),
+        "hil_sensor" => Message::HilSensor(mavlink::hil_sensor::Repr {
+            time_usec: int(&f["time_usec"]),
+            accel: floats(&f["accel"]),
+            gyro: floats(&f["gyro"]),
+            mag: floats(&f["mag"]),
+            abs_pressure: float(&f["abs_pressure"]),
+            diff_pressure: float(&f["diff_pressure"]),
+            pressure_alt: float(&f["pressure_alt"]),
+            temperature: float(&f["temperature"]),
+            fields_updated: int(&f["fields_updated"]),
+            id: int(&f["id"]),
+        }),
+        other => panic!("no message {other}"),
+    }
+}

@@ -1,0 +1,180 @@
+//! What holds for any values and any bytes.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use ratetable_protocols::mavlink::{self, Header, Message, Version};
+use ratetable_protocols::mpu::{self, Packet};
+use ratetable_protocols::{Error, cobs};
+
+fn any_packet() -> impl Strategy<Value = Packet> {
+    prop_oneof![
+        any::<([i16; 3], i16, [i16; 3])>().prop_map(|(accel, temperature, gyro)| Packet::Imu(
+            mpu::imu::Repr {
+                accel,
+                temperature,
+                gyro
+            }
+        )),
+        any::<(u8, [i16; 3], u8)>().prop_map(|(st1, field, st2)| Packet::Mag(mpu::mag::Repr {
+            st1,
+            field,
+            st2
+        })),
+        any::<[i16; 3]>().prop_map(|gyro| Packet::Gyro(mpu::gyro::Repr { gyro })),
+        any::<[i16; 3]>().prop_map(|accel| Packet::Accel(mpu::accel::Repr { accel })),
+        any::<[u8; 10]>().prop_map(|b| Packet::parse(mpu::config::TYPE, &b).unwrap()),
+        any::<(u32, [f32; 4])>()
+            .prop_map(|(clock_us, q)| Packet::Attitude(mpu::attitude::Repr { clock_us, q })),
+    ]
+}
+
+/// Any message, made from any payload without not-a-number.
+#[allow(clippy::eq_op, reason = "not-a-number is what is not equal to itself")]
+fn any_message() -> impl Strategy<Value = Message> {
+    let ids = prop_oneof![Just(0), Just(2), Just(30), Just(31), Just(107)];
+    (ids, vec(any::<u8>(), 65))
+        .prop_map(|(id, bytes)| Message::parse(id, &bytes).unwrap())
+        .prop_filter("not-a-number is not equal to itself", |message| {
+            message == message
+        })
+}
+
+fn any_header() -> impl Strategy<Value = Header> {
+    any::<(bool, u8, u8, u8)>().prop_map(|(v2, seq, system, component)| Header {
+        version: if v2 { Version::V2 } else { Version::V1 },
+        seq,
+        system,
+        component,
+    })
+}
+
+/// The message without what MAVLink 1 cannot say.
+fn as_said_in(version: Version, message: Message) -> Message {
+    match (version, message) {
+        (Version::V1, Message::HilSensor(repr)) => {
+            Message::HilSensor(mavlink::hil_sensor::Repr { id: 0, ..repr })
+        }
+        (Version::V1, Message::AttitudeQuaternion(repr)) => {
+            Message::AttitudeQuaternion(mavlink::attitude_quaternion::Repr {
+                repr_offset_q: [0.0; 4],
+                ..repr
+            })
+        }
+        _ => message,
+    }
+}
+
+proptest! {
+    #[test]
+    fn cobs_comes_back_and_has_no_zero(data in vec(any::<u8>(), 0..600)) {
+        let (mut stuffed, mut back) = ([0; 700], [0; 700]);
+        let len = cobs::encode(&data, &mut stuffed).unwrap();
+        prop_assert!(len <= cobs::max_encoded_len(data.len()));
+        prop_assert!(!stuffed[..len].contains(&0));
+        let len = cobs::decode(&stuffed[..len], &mut back).unwrap();
+        prop_assert_eq!(&back[..len], &data[..]);
+    }
+
+    #[test]
+    fn mpu_packets_come_back_however_the_stream_is_cut(
+        packets in vec((any::<u8>(), any::<u32>(), any_packet()), 1..20),
+        cut in 1_usize..40,
+    ) {
+        let mut stream = Vec::new();
+        for (seq, t_us, packet) in &packets {
+            let mut out = [0; mpu::MAX_LEN];
+            let len = mpu::encode(*seq, *t_us, packet, &mut out).unwrap();
+            prop_assert_eq!(out[..len].iter().position(|&byte| byte == 0), Some(len - 1));
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = mpu::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap()));
+        }
+        let back: Vec<_> = back.into_iter().map(|r| (r.seq, r.t_us, r.packet)).collect();
+        prop_assert_eq!(back, packets);
+    }
+
+    #[test]
+    fn mavlink_messages_come_back_however_the_stream_is_cut(
+        messages in vec((any_header(), any_message()), 1..10),
+        cut in 1_usize..100,
+    ) {
+        let mut stream = Vec::new();
+        for (header, message) in &messages {
+            let mut out = [0; mavlink::MAX_LEN];
+            let len = mavlink::encode(header, message, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = mavlink::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap()));
+        }
+        prop_assert_eq!(back.len(), messages.len());
+        for (received, (header, message)) in back.into_iter().zip(messages) {
+            prop_assert_eq!(received.header, header);
+            prop_assert_eq!(received.message, Some(as_said_in(header.version, message)));
+        }
+    }
+
+    #[test]
+    fn no_bytes_panic_and_the_next_packet_is_found(
+        rubbish in vec(prop_oneof![any::<u8>(), Just(0), Just(0xfd), Just(0xfe)], 0..1500),
+    ) {
+        let mut out = [0; 300];
+        let packet = Packet::Gyro(mpu::gyro::Repr { gyro: [1, 2, 3] });
+        let len = mpu::encode(5, 6, &packet, &mut out).unwrap();
+        let mut decoder = mpu::Decoder::new();
+        let mut last = None;
+        decoder.feed(&rubbish, |_| {});
+        decoder.feed(&out[..len], |received| last = received.ok());
+        prop_assert_eq!(last.map(|received| received.packet), Some(packet));
+
+        let header = Header { version: Version::V2, seq: 0, system: 1, component: 1 };
+        let message = Message::SystemTime(mavlink::system_time::Repr {
+            time_unix_usec: 1,
+            time_boot_ms: 2,
+        });
+        let len = mavlink::encode(&header, &message, &mut out).unwrap();
+        let mut decoder = mavlink::Decoder::new();
+        let mut found = false;
+        // Out of step first, as any damage to a known message leaves it: then nothing is believed
+        // without its checksum.
+        decoder.feed(&[0], |_| {});
+        decoder.feed(&rubbish, |_| {});
+        let mut on = |received: Result<mavlink::Received, Error>| {
+            found |= received.is_ok_and(|received| received.message == Some(message));
+        };
+        decoder.feed(&out[..len], &mut on);
+        decoder.finish(&mut on);
+        prop_assert!(found);
+    }
+
+    #[test]
+    fn no_payload_panics(kind in any::<u8>(), id in 0_u32..300, bytes in vec(any::<u8>(), 0..300)) {
+        let _ = Packet::parse(kind, &bytes);
+        let _ = Message::parse(id, &bytes);
+        let _ = mpu::decode(&bytes);
+        let mut short = [0; 20];
+        let _ = cobs::decode(&bytes, &mut short);
+        let _ = cobs::encode(&bytes, &mut short);
+    }
+
+    #[test]
+    fn short_buffers_are_refused_and_enough_is_as_said(packet in any_packet(), message in any_message()) {
+        let mut out = [0; 300];
+        for room in 0..mpu::MAX_LEN {
+            match mpu::encode(0, 0, &packet, &mut out[..room]) {
+                Ok(len) => prop_assert!(len <= room),
+                Err(Error::BufferTooSmall { needed }) => prop_assert!(needed > room),
+                Err(other) => prop_assert!(false, "{}", other),
+            }
+        }
+        let header = Header { version: Version::V2, seq: 0, system: 1, component: 1 };
+        let len = mavlink::encode(&header, &message, &mut out).unwrap();
+        let refused = mavlink::encode(&header, &message, &mut out[..len - 1]);
+        prop_assert_eq!(refused, Err(Error::BufferTooSmall { needed: len }));
+    }
+}

@@ -1,0 +1,143 @@
+//! What a table of a scene may hold, declared as data by whatever it configures.
+//!
+//! Each kind of motion and each error term lists its keys beside its code; the scene reads any such list, checks
+//! names, units and defaults, and hands back [`Values`] in SI units and in the program's own axes. `ratetable
+//! list` and the docs print the same lists, so a key cannot be accepted and left undocumented.
+
+use crate::double::Double;
+use crate::quantity::{Kind, Resolution};
+use crate::time::SimTime;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// One key of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// As written in the scene.
+    pub name: &'static str,
+    /// What it accepts.
+    pub takes: Takes,
+    /// What it is when absent; `None` = nothing, which the builder may refuse.
+    pub default: Option<&'static str>,
+    /// One line for `list` and the docs.
+    pub about: &'static str,
+}
+
+/// What a key accepts.
+#[derive(Clone, Copy, Debug)]
+pub enum Takes {
+    /// A number with a unit.
+    Scalar(Kind),
+    /// One number an axis, or one for all three; a magnitude, so its sign does not depend on the axes.
+    PerAxis(Kind),
+    /// A vector in body axes, turned from the scene's axes to Forward-Right-Down.
+    BodyVector(Kind),
+    /// The size of a count, counts a unit, or bits.
+    Resolution(Kind),
+    /// A time of at least zero, exact in nanoseconds.
+    Duration,
+    /// One of these words.
+    Word(&'static [&'static str]),
+}
+
+/// A value as read: SI units (µT for a field), the program's own axes.
+#[derive(Clone, Copy, Debug)]
+pub enum Value {
+    /// Of [`Takes::Scalar`].
+    Scalar(Double),
+    /// Of [`Takes::PerAxis`] and [`Takes::BodyVector`].
+    Triple([Double; 3]),
+    /// Of [`Takes::Resolution`].
+    Resolution(Resolution),
+    /// Of [`Takes::Duration`].
+    Time(SimTime),
+    /// Of [`Takes::Word`].
+    Word(&'static str),
+}
+
+/// The values of one table, by key. A getter returns `None` for a key that is absent and has no default.
+#[derive(Clone, Debug, Default)]
+pub struct Values(BTreeMap<&'static str, Value>);
+
+impl Values {
+    /// Sets one key.
+    pub fn insert(&mut self, key: &'static str, value: Value) {
+        self.0.insert(key, value);
+    }
+
+    /// Whether the key has a value.
+    pub fn has(&self, key: &str) -> bool {
+        self.0.contains_key(key)
+    }
+
+    /// A scalar to double-double precision.
+    pub fn double(&self, key: &str) -> Option<Double> {
+        match self.0.get(key)? {
+            Value::Scalar(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// A scalar.
+    pub fn scalar(&self, key: &str) -> Option<f64> {
+        self.double(key).map(Double::to_f64)
+    }
+
+    /// Three components to double-double precision.
+    pub fn triple(&self, key: &str) -> Option<[Double; 3]> {
+        match self.0.get(key)? {
+            Value::Triple(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// Three components.
+    pub fn vector(&self, key: &str) -> Option<DVec3> {
+        self.triple(key).map(|t| DVec3::from_array(t.map(Double::to_f64)))
+    }
+
+    /// A resolution.
+    pub fn resolution(&self, key: &str) -> Option<Resolution> {
+        match self.0.get(key)? {
+            Value::Resolution(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// A time.
+    pub fn time(&self, key: &str) -> Option<SimTime> {
+        match self.0.get(key)? {
+            Value::Time(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// A word.
+    pub fn word(&self, key: &str) -> Option<&'static str> {
+        match self.0.get(key)? {
+            Value::Word(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+}
+
+/// A table that asks for a key as another kind than it declared is a defect of the program, found by its tests.
+fn mismatch<T>(key: &str, value: &Value) -> Option<T> {
+    panic!("`{key}` was declared and read as different kinds: {value:?}")
+}
+
+/// A value that is well formed but cannot be: the key, and what would be right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyError {
+    /// The key to point at.
+    pub key: &'static str,
+    /// The bad value and what would be right.
+    pub message: String,
+}
+
+impl KeyError {
+    /// At `key`, saying `message`.
+    pub fn new(key: &'static str, message: impl Into<String>) -> KeyError {
+        KeyError { key, message: message.into() }
+    }
+}

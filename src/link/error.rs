@@ -1,0 +1,150 @@
+//! Why a link could not be had.
+
+use std::io;
+use std::path::PathBuf;
+
+use super::holders::Holder;
+
+/// Why a link could not be opened, or nobody came to it.
+///
+/// One enum for the room: a caller does nothing else with any of them than show it, so each names
+/// the link as it was spelled, the value that was wrong, and what would be right.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LinkError {
+    /// The address cannot be understood.
+    #[error("link `{spelled}`: {problem}; {right}")]
+    Spelling {
+        /// The address as written.
+        spelled: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What would be right.
+        right: String,
+    },
+    /// There is no such serial port.
+    #[error("link `{link}`: there is no port {}; {}", path.display(), present(ports))]
+    NoSuchPort {
+        /// The link as spelled.
+        link: String,
+        /// The device that is missing.
+        path: PathBuf,
+        /// The ports that exist.
+        ports: Vec<String>,
+    },
+    /// The user may not open the device.
+    #[error("link `{link}`: permission denied: {}; {remedy}", path.display())]
+    Denied {
+        /// The link as spelled.
+        link: String,
+        /// The device or file.
+        path: PathBuf,
+        /// What would grant it.
+        remedy: String,
+    },
+    /// Another process has the port.
+    #[error("link `{link}`: {} is busy: {}", path.display(), held_by(holders))]
+    Busy {
+        /// The link as spelled.
+        link: String,
+        /// The device.
+        path: PathBuf,
+        /// The processes that hold it, as far as this user may see them.
+        holders: Vec<Holder>,
+    },
+    /// The path is not a serial port.
+    #[error("link `{link}`: {} is not a serial port; to write a file say file:{0}", path.display())]
+    NotSerial {
+        /// The link as spelled.
+        link: String,
+        /// The path.
+        path: PathBuf,
+    },
+    /// The port does not run at this speed.
+    #[error(
+        "link `{link}`: the port does not run at {baud} baud; usual speeds are 57600, 115200, 921600"
+    )]
+    Baud {
+        /// The link as spelled.
+        link: String,
+        /// The speed asked for.
+        baud: u32,
+    },
+    /// A pty cannot be published at this path.
+    #[error("link `{link}`: {} already exists{what}; remove it or choose another path", path.display())]
+    PathTaken {
+        /// The link as spelled.
+        link: String,
+        /// The path.
+        path: PathBuf,
+        /// What is there, where that helps.
+        what: String,
+    },
+    /// The host's name has no address.
+    #[error("link `{link}`: `{host}` has no address; give one in numbers, as in 127.0.0.1")]
+    UnknownHost {
+        /// The link as spelled.
+        link: String,
+        /// The name.
+        host: String,
+        /// What the resolver said.
+        source: io::Error,
+    },
+    /// The address cannot be listened on.
+    #[error("link `{link}`: cannot listen on {place}: {why}")]
+    Listen {
+        /// The link as spelled.
+        link: String,
+        /// The address and port.
+        place: String,
+        /// What is in the way and what would do.
+        why: &'static str,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Nobody answers at the address.
+    #[error("link `{link}`: {place} does not answer: {why}")]
+    Refused {
+        /// The link as spelled.
+        link: String,
+        /// The address and port.
+        place: String,
+        /// What is in the way and what would do.
+        why: &'static str,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Anything else the system refused.
+    #[error("link `{link}`: cannot {doing}")]
+    Io {
+        /// The link as spelled.
+        link: String,
+        /// What was being done.
+        doing: String,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+/// The ports there are, as the end of a sentence.
+fn present(ports: &[String]) -> String {
+    match ports {
+        [] => "no serial port is present (`ratetable list ports` looks again)".to_owned(),
+        ports => format!("present: {}", ports.join(", ")),
+    }
+}
+
+/// Who holds a port, and how to make it let go.
+fn held_by(holders: &[Holder]) -> String {
+    if holders.is_empty() {
+        return "another process holds it (root may see which: `sudo fuser -v` on it)".to_owned();
+    }
+    let named: Vec<_> = holders.iter().map(Holder::to_string).collect();
+    let advice = holders.iter().filter_map(Holder::advice);
+    let mut text = format!("held by {}", named.join(", "));
+    for advice in advice {
+        text.push_str("; ");
+        text.push_str(advice);
+    }
+    text
+}

@@ -1,0 +1,110 @@
+//! Who has a device open: what `fuser` does, for a message that names the culprit.
+
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+/// A process that has a device open.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Holder {
+    /// Its process id.
+    pub pid: u32,
+    /// Its name, as the system knows it.
+    pub name: String,
+}
+
+impl Holder {
+    /// How the usual suspects are made to let go.
+    pub(super) fn advice(&self) -> Option<&'static str> {
+        let name = self.name.to_ascii_lowercase();
+        if name.starts_with("qgroundcontrol") || name.starts_with("qgc") {
+            Some("close QGroundControl, or turn off its AutoConnect for serial devices")
+        } else if name.starts_with("modemmanager") {
+            Some("ModemManager probes every new port: `sudo systemctl stop ModemManager`")
+        } else {
+            None
+        }
+    }
+}
+
+impl fmt::Display for Holder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pid, name } = self;
+        match *pid == std::process::id() {
+            true => write!(f, "this program (process {pid})"),
+            false => write!(f, "{name} (process {pid})"),
+        }
+    }
+}
+
+/// The processes that have `device` open, as far as this user may see: only root sees everyone's.
+pub(super) fn holders(device: &Path) -> Vec<Holder> {
+    let device = fs::canonicalize(device).unwrap_or_else(|_| device.to_owned());
+    let mut found = Vec::new();
+    for process in fs::read_dir("/proc").into_iter().flatten().flatten() {
+        let name = process.file_name();
+        let Some(pid) = name.to_str().and_then(|name| name.parse().ok()) else {
+            continue;
+        };
+        if descriptors(&process.path(), &device).next().is_some() {
+            let name = fs::read_to_string(process.path().join("comm")).unwrap_or_default();
+            let name = name.trim_end().to_owned();
+            found.push(Holder { pid, name });
+        }
+    }
+    found
+}
+
+/// How many descriptors of all processes are `device`.
+pub(super) fn times_open(device: &Path) -> usize {
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    processes
+        .map(|process| descriptors(&process.path(), device).count())
+        .sum()
+}
+
+/// The descriptors of a process (its folder in `/proc`) that are `device`.
+fn descriptors(process: &Path, device: &Path) -> impl Iterator<Item = fs::DirEntry> {
+    let all = fs::read_dir(process.join("fd")).into_iter().flatten();
+    all.flatten()
+        .filter(move |entry| fs::read_link(entry.path()).is_ok_and(|target| target == device))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_that_has_a_file_open_is_found() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let found = holders(file.path());
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].pid, std::process::id());
+        assert!(found[0].to_string().contains("this program"));
+        assert_eq!(times_open(file.path()), 1);
+        let closed = file.into_temp_path();
+        assert_eq!(holders(&closed), []);
+    }
+
+    #[test]
+    fn the_usual_suspects_come_with_a_remedy() {
+        let holder = |name: &str| Holder {
+            pid: 1,
+            name: name.to_owned(),
+        };
+        assert!(
+            holder("QGroundControl")
+                .advice()
+                .unwrap()
+                .contains("AutoConnect")
+        );
+        assert!(
+            holder("ModemManager")
+                .advice()
+                .unwrap()
+                .contains("systemctl")
+        );
+        assert_eq!(holder("minicom").advice(), None);
+        assert_eq!(holder("minicom").to_string(), "minicom (process 1)");
+    }
+}

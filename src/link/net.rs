@@ -1,0 +1,69 @@
+//! What TCP and UDP have in common: names, and what a refusal means.
+
+use std::io;
+use std::net::SocketAddr;
+
+use super::LinkError;
+use super::address::{Address, Place};
+
+/// The addresses of a place, IPv4 first.
+pub(super) async fn resolve(
+    address: &Address,
+    place: &Place,
+) -> Result<Vec<SocketAddr>, LinkError> {
+    let unknown = |source| LinkError::UnknownHost {
+        link: address.to_string(),
+        host: place.host.clone(),
+        source,
+    };
+    let found = tokio::net::lookup_host((place.host.as_str(), place.port)).await;
+    let mut found: Vec<_> = found.map_err(unknown)?.collect();
+    found.sort_by_key(SocketAddr::is_ipv6);
+    match found.is_empty() {
+        true => Err(unknown(io::ErrorKind::NotFound.into())),
+        false => Ok(found),
+    }
+}
+
+/// The first address of a place.
+pub(super) async fn resolve_one(address: &Address, place: &Place) -> Result<SocketAddr, LinkError> {
+    Ok(resolve(address, place).await?[0])
+}
+
+/// Why a place cannot be listened on.
+pub(super) fn cannot_listen(address: &Address, place: &Place, source: io::Error) -> LinkError {
+    let why = match source.kind() {
+        io::ErrorKind::AddrInUse => "another program has that port; port 0 picks a free one",
+        io::ErrorKind::AddrNotAvailable => {
+            "this machine has no such address; 127.0.0.1 is this machine alone, 0.0.0.0 every network"
+        }
+        io::ErrorKind::PermissionDenied => "ports below 1024 belong to root; choose a higher one",
+        _ => "the system refused",
+    };
+    LinkError::Listen {
+        link: address.to_string(),
+        place: place.to_string(),
+        why,
+        source,
+    }
+}
+
+/// Why a place cannot be reached.
+pub(super) fn cannot_reach(address: &Address, place: &Place, source: io::Error) -> LinkError {
+    let why = match source.kind() {
+        io::ErrorKind::ConnectionRefused => {
+            "nobody listens there; start the other side first, or wait for it with tcpin"
+        }
+        io::ErrorKind::TimedOut => "no answer; is the address right, and no firewall between?",
+        io::ErrorKind::HostUnreachable | io::ErrorKind::NetworkUnreachable => {
+            "there is no way to that address from here"
+        }
+        _ => "the system refused",
+    };
+    LinkError::Refused {
+        link: address.to_string(),
+        place: place.to_string(),
+        why,
+        source,
+    }
+}

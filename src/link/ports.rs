@@ -1,0 +1,106 @@
+//! The serial ports that are plugged in.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serialport::SerialPortType;
+
+/// A serial port, and what to do with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// The device.
+    pub path: PathBuf,
+    /// What a USB device calls itself.
+    pub product: Option<String>,
+    /// Who made a USB device.
+    pub manufacturer: Option<String>,
+    /// A command line that uses it.
+    pub command: String,
+}
+
+impl fmt::Display for Port {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        match self.product.as_deref().or(self.manufacturer.as_deref()) {
+            Some(what) => write!(f, " ({what})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Words in what a device says of itself, and the target that speaks to it.
+const TARGETS: &[(&str, &str)] = &[
+    ("px4", "px4"),
+    ("3d robotics", "px4"),
+    ("ardupilot", "ardupilot"),
+    ("hex/proficnc", "ardupilot"),
+    ("cubepilot", "ardupilot"),
+    ("inav", "inav"),
+];
+
+/// The serial ports of this machine, by path.
+pub fn ports() -> Vec<Port> {
+    let mut found: Vec<_> = serialport::available_ports()
+        .unwrap_or_default()
+        .into_iter()
+        .map(|port| described(port.port_name, port.port_type))
+        .collect();
+    found.sort_by(|a, b| a.path.cmp(&b.path));
+    found.dedup_by(|a, b| a.path == b.path);
+    found
+}
+
+fn described(path: String, kind: SerialPortType) -> Port {
+    let (product, manufacturer) = match kind {
+        SerialPortType::UsbPort(usb) => (usb.product, usb.manufacturer),
+        _ => (None, None),
+    };
+    let said = [&manufacturer, &product].map(|text| text.clone().unwrap_or_default());
+    let said = said.join(" ").to_lowercase();
+    let target = TARGETS.iter().find(|(word, _)| said.contains(word));
+    let protocol = target.map_or("mpu", |(_, target)| target);
+    Port {
+        command: format!("ratetable run --to {protocol}@{path}"),
+        path: path.into(),
+        product,
+        manufacturer,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serialport::UsbPortInfo;
+
+    use super::*;
+
+    fn usb(manufacturer: &str, product: &str) -> SerialPortType {
+        SerialPortType::UsbPort(UsbPortInfo {
+            vid: 1,
+            pid: 2,
+            serial_number: None,
+            manufacturer: Some(manufacturer.to_owned()),
+            product: Some(product.to_owned()),
+        })
+    }
+
+    #[test]
+    fn a_flight_controller_comes_with_its_own_command() {
+        let cases = [
+            (usb("3D Robotics", "PX4 FMU v5.x"), "px4@/dev/ttyACM0"),
+            (usb("ArduPilot", "Pixhawk1"), "ardupilot@/dev/ttyACM0"),
+            (usb("INAV", "MATEKF722"), "inav@/dev/ttyACM0"),
+            (usb("FTDI", "FT232R USB UART"), "mpu@/dev/ttyACM0"),
+            (SerialPortType::Unknown, "mpu@/dev/ttyACM0"),
+        ];
+        for (kind, to) in cases {
+            let port = described("/dev/ttyACM0".to_owned(), kind);
+            assert_eq!(port.command, format!("ratetable run --to {to}"));
+        }
+    }
+
+    #[test]
+    fn ports_are_in_order_and_each_is_there_once() {
+        let ports = ports();
+        assert!(ports.windows(2).all(|pair| pair[0].path < pair[1].path));
+    }
+}

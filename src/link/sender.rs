@@ -1,0 +1,378 @@
+//! The way out: what the pacing thread holds. No allocation, no lock, no executor.
+
+use std::io;
+use std::os::fd::BorrowedFd;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use super::{file, memory, stdout, tcp, tty, udp};
+
+/// The longest packet a link takes, in bytes.
+pub const MAX_PACKET: usize = 65_536;
+
+/// What became of a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum Sent {
+    /// The link has all of it.
+    Done,
+    /// The link takes nothing now, and has none of it.
+    Full,
+    /// Nobody is there any more, or the packet can never be sent (`InvalidInput`: too long).
+    Gone(io::ErrorKind),
+}
+
+/// The sending side of a link, for one thread.
+///
+/// A packet is never cut: where the system takes only a part of it, the rest is kept here and goes
+/// out before the next packet. Call [`finish`](Self::finish) at the end.
+pub struct Sender {
+    to: To,
+    carry: Carry,
+}
+
+/// Where the bytes go, one a kind of link.
+pub(super) enum To {
+    Tty(tty::Out),
+    Tcp(tcp::Out),
+    Udp(udp::Out),
+    File(file::Out),
+    Stdout(stdout::Out),
+    Memory(memory::Out),
+}
+
+/// Does the same with every kind of link.
+macro_rules! each {
+    ($to:expr, $out:ident => $do:expr) => {
+        match $to {
+            To::Tty($out) => $do,
+            To::Tcp($out) => $do,
+            To::Udp($out) => $do,
+            To::File($out) => $do,
+            To::Stdout($out) => $do,
+            To::Memory($out) => $do,
+        }
+    };
+}
+
+impl Sender {
+    pub(super) fn new(to: To, carry: Carry) -> Self {
+        Self { to, carry }
+    }
+
+    /// Sends a packet if the link takes it now; never waits.
+    ///
+    /// A file gathers packets and writes many at once; that write may wait for the disk.
+    pub fn send(&mut self, packet: &[u8]) -> Sent {
+        self.take(packet, self.carry.gather == Gather::Always)
+    }
+
+    /// Sends `bytes`, waiting for as long as the link is full; nothing is dropped.
+    ///
+    /// `Full` only after `stop` was set, looked at every 50 ms. More than [`MAX_PACKET`] bytes may
+    /// then have been sent in part.
+    pub fn send_all(&mut self, bytes: &[u8], stop: &AtomicBool) -> Sent {
+        let gather = self.carry.gather != Gather::Never;
+        for part in bytes.chunks(MAX_PACKET) {
+            loop {
+                match self.take(part, gather) {
+                    Sent::Done => break,
+                    Sent::Full if stop.load(Ordering::Relaxed) => return Sent::Full,
+                    Sent::Full => self.wait(),
+                    gone @ Sent::Gone(_) => return gone,
+                }
+            }
+        }
+        Sent::Done
+    }
+
+    /// Sends what is kept of earlier packets as far as the link takes it now; never waits.
+    ///
+    /// `Done` when nothing is kept any more, `Full` when something is.
+    pub fn flush_carry(&mut self) -> Sent {
+        while !self.carry.kept().is_empty() {
+            match write(&mut self.to, self.carry.kept()) {
+                Ok(count) => self.carry.forget(count),
+                Err(full) => return self.refused(full),
+            }
+        }
+        Sent::Done
+    }
+
+    /// Sends all that is kept, waiting where needed: without limit for a file or standard output,
+    /// otherwise as long as bytes move at least once a second (`TimedOut`).
+    pub fn finish(&mut self) -> io::Result<()> {
+        let patient = self.carry.gather != Gather::Never;
+        let mut idle = 0;
+        let mut left = self.carry.kept().len();
+        loop {
+            match self.flush_carry() {
+                Sent::Done => return Ok(()),
+                Sent::Gone(kind) => return Err(kind.into()),
+                Sent::Full if self.carry.kept().len() < left => idle = 0,
+                Sent::Full => idle += 1,
+            }
+            if idle * WAIT_MS > 1000 && !patient {
+                return Err(io::ErrorKind::TimedOut.into());
+            }
+            left = self.carry.kept().len();
+            self.wait();
+        }
+    }
+
+    /// Bytes kept here because the system did not take them yet.
+    pub fn kept(&self) -> usize {
+        self.carry.kept().len()
+    }
+
+    /// Bytes that are on their way to the other side, where the system says so; those kept here
+    /// included.
+    ///
+    /// On a pty: what its reader has not read, of which the kernel shows at most about 4 kB of the
+    /// 19 kB it holds. On a socket: what was not acknowledged.
+    pub fn queued(&self) -> Option<usize> {
+        let beyond = each!(&self.to, out => out.queued())?;
+        Some(beyond + self.kept())
+    }
+
+    fn take(&mut self, packet: &[u8], gather: bool) -> Sent {
+        if packet.len() > MAX_PACKET {
+            return Sent::Gone(io::ErrorKind::InvalidInput);
+        }
+        if gather && self.carry.fits(packet.len()) {
+            self.carry.keep(packet);
+            return Sent::Done;
+        }
+        match self.flush_carry() {
+            Sent::Done => {}
+            // A batch needs room, not emptiness.
+            Sent::Full if gather && self.carry.fits(packet.len()) => {}
+            other => return other,
+        }
+        if gather {
+            self.carry.keep(packet);
+            return Sent::Done;
+        }
+        match write(&mut self.to, packet) {
+            Ok(count) if count < packet.len() => {
+                self.carry.keep(&packet[count..]);
+                // What is in the way may have been a limit on one call.
+                match self.flush_carry() {
+                    Sent::Full => Sent::Done,
+                    other => other,
+                }
+            }
+            Ok(_) => Sent::Done,
+            Err(refused) => self.refused(refused),
+        }
+    }
+
+    /// What a refusal means; nobody waits for what is kept for one who is gone.
+    fn refused(&mut self, sent: Sent) -> Sent {
+        if let Sent::Gone(_) = sent {
+            self.carry.clear();
+        }
+        sent
+    }
+
+    /// Waits until the link may take something, 50 ms at most.
+    fn wait(&self) {
+        let slice = Timespec {
+            tv_sec: 0,
+            tv_nsec: WAIT_MS * 1_000_000,
+        };
+        // Woken early or for nothing, the caller only asks again.
+        let _ = match each!(&self.to, out => out.poll_fd()) {
+            Some(fd) => poll_writable(fd, &slice),
+            None => poll(&mut [], Some(&slice)),
+        };
+    }
+}
+
+impl Drop for Sender {
+    /// Sends what the link takes without waiting; `finish` is the way to know that it did.
+    fn drop(&mut self) {
+        let _ = self.flush_carry();
+    }
+}
+
+/// One slice of waiting, in ms.
+const WAIT_MS: i64 = 50;
+
+fn poll_writable(fd: BorrowedFd<'_>, slice: &Timespec) -> rustix::io::Result<usize> {
+    poll(
+        &mut [PollFd::from_borrowed_fd(fd, PollFlags::OUT)],
+        Some(slice),
+    )
+}
+
+/// One write: how many bytes were taken, or why none was.
+fn write(to: &mut To, bytes: &[u8]) -> Result<usize, Sent> {
+    loop {
+        match each!(&mut *to, out => out.write(bytes)) {
+            Ok(0) if !bytes.is_empty() => return Err(Sent::Full),
+            Ok(count) => return Ok(count),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(meaning(&error)),
+        }
+    }
+}
+
+fn meaning(error: &io::Error) -> Sent {
+    match (error.kind(), error.raw_os_error()) {
+        (io::ErrorKind::WouldBlock, _) | (_, Some(libc::ENOBUFS)) => Sent::Full,
+        (_, Some(libc::EMSGSIZE)) => Sent::Gone(io::ErrorKind::InvalidInput),
+        (kind, _) => Sent::Gone(kind),
+    }
+}
+
+/// When packets are gathered to be written many at once.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Gather {
+    Never,
+    /// In `send_all` only: a packet that is due goes out at once.
+    WhenUnpaced,
+    Always,
+}
+
+/// Bytes that the system has not taken yet, in a buffer that never grows.
+pub(super) struct Carry {
+    bytes: Box<[u8]>,
+    start: usize,
+    end: usize,
+    gather: Gather,
+}
+
+impl Carry {
+    fn new(size: usize, gather: Gather) -> Self {
+        Self {
+            bytes: vec![0; size].into_boxed_slice(),
+            start: 0,
+            end: 0,
+            gather,
+        }
+    }
+
+    /// For a stream: room for the rest of a packet.
+    pub(super) fn packet() -> Self {
+        Self::new(MAX_PACKET, Gather::Never)
+    }
+
+    /// For datagrams, which go whole or not at all.
+    pub(super) fn none() -> Self {
+        Self::new(0, Gather::Never)
+    }
+
+    /// For a file.
+    pub(super) fn batch() -> Self {
+        Self::new(4 * MAX_PACKET, Gather::Always)
+    }
+
+    /// For a pipe that somebody may be watching.
+    pub(super) fn lively_batch() -> Self {
+        Self::new(4 * MAX_PACKET, Gather::WhenUnpaced)
+    }
+
+    fn kept(&self) -> &[u8] {
+        &self.bytes[self.start..self.end]
+    }
+
+    fn fits(&self, count: usize) -> bool {
+        count <= self.bytes.len() - (self.end - self.start)
+    }
+
+    /// Adds bytes that fit.
+    fn keep(&mut self, more: &[u8]) {
+        if more.len() > self.bytes.len() - self.end {
+            self.bytes.copy_within(self.start..self.end, 0);
+            self.end -= self.start;
+            self.start = 0;
+        }
+        self.bytes[self.end..self.end + more.len()].copy_from_slice(more);
+        self.end += more.len();
+    }
+
+    fn forget(&mut self, count: usize) {
+        self.start += count;
+        if self.start == self.end {
+            self.clear();
+        }
+    }
+
+    fn clear(&mut self) {
+        self.start = 0;
+        self.end = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::memory;
+    use super::*;
+
+    #[test]
+    fn a_packet_that_half_fits_is_finished_before_the_next() {
+        let (mut link, mut far) = memory(10);
+        let mut sender = link.sender();
+        assert_eq!(sender.send(b"abcdefg"), Sent::Done);
+        assert_eq!(sender.send(b"ABCDEFG"), Sent::Done);
+        assert_eq!(sender.kept(), 4);
+        assert_eq!(sender.send(b"never"), Sent::Full);
+        assert_eq!(far.take(), b"abcdefgABC");
+        assert_eq!(sender.send(b"123"), Sent::Done);
+        assert_eq!(far.take(), b"DEFG123");
+        assert_eq!(sender.queued(), Some(0));
+    }
+
+    #[test]
+    fn what_is_kept_is_flushed_when_there_is_room() {
+        let (mut link, mut far) = memory(4);
+        let mut sender = link.sender();
+        assert_eq!(sender.send(b"abcdef"), Sent::Done);
+        assert_eq!(sender.flush_carry(), Sent::Full);
+        assert_eq!(far.take(), b"abcd");
+        assert_eq!(sender.flush_carry(), Sent::Done);
+        sender.finish().unwrap();
+        assert_eq!(far.take(), b"ef");
+    }
+
+    #[test]
+    fn a_carry_makes_room_by_moving_what_it_keeps() {
+        let mut carry = Carry::new(6, Gather::Never);
+        carry.keep(b"abcdef");
+        carry.forget(4);
+        assert!(carry.fits(4) && !carry.fits(5));
+        carry.keep(b"1234");
+        assert_eq!(carry.kept(), b"ef1234");
+        carry.forget(6);
+        assert!(carry.fits(6));
+    }
+
+    #[test]
+    fn a_packet_longer_than_any_is_refused_whole() {
+        let (mut link, mut far) = memory(10);
+        let mut sender = link.sender();
+        let sent = sender.send(&vec![0; MAX_PACKET + 1]);
+        assert_eq!(sent, Sent::Gone(io::ErrorKind::InvalidInput));
+        assert_eq!(far.take(), b"");
+    }
+
+    #[test]
+    fn waiting_ends_when_told_to_stop() {
+        let (mut link, far) = memory(4);
+        let mut sender = link.sender();
+        far.stall(true);
+        assert_eq!(sender.send_all(b"ab", &AtomicBool::new(true)), Sent::Full);
+        far.stall(false);
+        assert_eq!(sender.send_all(b"ab", &AtomicBool::new(true)), Sent::Done);
+    }
+
+    #[test]
+    fn a_reader_that_never_comes_ends_the_finish_too() {
+        let (mut link, _far) = memory(4);
+        let mut sender = link.sender();
+        assert_eq!(sender.send(b"abcdef"), Sent::Done);
+        assert_eq!(sender.finish().unwrap_err().kind(), io::ErrorKind::TimedOut);
+    }
+}

@@ -1,0 +1,187 @@
+//! UDP datagrams, a packet each, to whoever sent first (`udpin`) or to one place (`udpout`).
+//!
+//! Nobody can tell whether a datagram arrived: the link is never `Gone` because nobody listens.
+
+use std::io;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
+use std::os::fd::{AsFd, BorrowedFd};
+use std::sync::Arc;
+
+use tokio::sync::OnceCell;
+
+use super::address::{Address, Place, Problem};
+use super::net::{cannot_listen, cannot_reach, resolve_one};
+use super::scheme::{self, Scheme};
+use super::sender::{Carry, Sender, To};
+use super::{LinkError, receiver};
+use crate::os;
+
+/// The listening line in the table of links.
+pub(super) const SCHEME_IN: Scheme = Scheme {
+    name: "udpin",
+    spelling: "udpin:[ADDR:]PORT",
+    about: "waits for a first datagram and answers its sender; on this machine alone where no ADDR is given",
+    parse: parse_in,
+};
+
+/// The sending line in the table of links.
+pub(super) const SCHEME_OUT: Scheme = Scheme {
+    name: "udpout",
+    spelling: "udpout:ADDR:PORT",
+    about: "sends UDP datagrams to one place, a packet each",
+    parse: parse_out,
+};
+
+fn parse_in(rest: Option<&str>) -> Result<Address, Problem> {
+    scheme::listening("udpin", rest).map(Address::UdpIn)
+}
+
+fn parse_out(rest: Option<&str>) -> Result<Address, Problem> {
+    scheme::destination("udpout", rest).map(Address::UdpOut)
+}
+
+/// The longest datagram there is.
+const LONGEST: usize = 65_536;
+
+/// An open UDP link.
+pub(super) struct Udp {
+    name: String,
+    way: Arc<Way>,
+}
+
+/// The socket, and where it sends once that is known.
+pub(super) struct Way {
+    /// For the pacing thread, which knows nothing of the executor.
+    plain: UdpSocket,
+    /// The same socket, for waiting.
+    socket: tokio::net::UdpSocket,
+    peer: OnceCell<SocketAddr>,
+}
+
+impl Udp {
+    pub(super) async fn listen(address: &Address, place: &Place) -> Result<Self, LinkError> {
+        let local = resolve_one(address, place).await?;
+        let refused = |source| cannot_listen(address, place, source);
+        let plain = UdpSocket::bind(local).map_err(refused)?;
+        let name = plain.local_addr().map_err(refused)?.to_string();
+        let way = Way::new(plain, OnceCell::new()).map_err(refused)?;
+        Ok(Self { name, way })
+    }
+
+    pub(super) async fn aim(address: &Address, place: &Place) -> Result<Self, LinkError> {
+        let far = resolve_one(address, place).await?;
+        let refused = |source| cannot_reach(address, place, source);
+        let any = match far {
+            SocketAddr::V4(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
+            SocketAddr::V6(_) => IpAddr::V6(Ipv6Addr::UNSPECIFIED),
+        };
+        let local = match far.ip().is_loopback() {
+            true => far.ip(),
+            false => any,
+        };
+        let plain = UdpSocket::bind((local, 0)).map_err(refused)?;
+        plain.set_broadcast(true).map_err(refused)?;
+        let name = far.to_string();
+        let way = Way::new(plain, OnceCell::new_with(Some(far))).map_err(refused)?;
+        Ok(Self { name, way })
+    }
+
+    pub(super) fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    pub(super) fn present(&self) -> bool {
+        self.way.peer.initialized()
+    }
+
+    pub(super) async fn peer(&mut self) -> io::Result<()> {
+        self.way.known().await.map(drop)
+    }
+
+    pub(super) fn sender(&mut self) -> Sender {
+        Sender::new(To::Udp(Out(Arc::clone(&self.way))), Carry::none())
+    }
+
+    pub(super) fn receiver(&mut self) -> Option<receiver::From> {
+        let way = Arc::clone(&self.way);
+        Some(receiver::From::Udp(In(way)))
+    }
+
+    /// Nothing to wait for: the kernel sends what it has taken.
+    pub(super) async fn close(self) {}
+}
+
+impl Way {
+    fn new(plain: UdpSocket, peer: OnceCell<SocketAddr>) -> io::Result<Arc<Self>> {
+        plain.set_nonblocking(true)?;
+        let socket = tokio::net::UdpSocket::from_std(plain.try_clone()?)?;
+        Ok(Arc::new(Self {
+            plain,
+            socket,
+            peer,
+        }))
+    }
+
+    /// Where packets go: who sends first, where nobody was named. Cancelling it loses nothing, and
+    /// that first datagram is still there to be received.
+    async fn known(&self) -> io::Result<SocketAddr> {
+        let first = || async {
+            let mut peeked = [0];
+            self.socket
+                .peek_from(&mut peeked)
+                .await
+                .map(|(_, sender)| sender)
+        };
+        self.peer.get_or_try_init(first).await.copied()
+    }
+}
+
+/// The sending side.
+pub(super) struct Out(Arc<Way>);
+
+impl Out {
+    /// Sends `bytes` as one datagram: all of them or none.
+    pub(super) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.peer.get() {
+            Some(peer) => self.0.plain.send_to(bytes, peer),
+            None => Err(io::ErrorKind::WouldBlock.into()),
+        }
+    }
+
+    pub(super) fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
+        self.0.peer.get().map(|_| self.0.plain.as_fd())
+    }
+
+    pub(super) fn queued(&self) -> Option<usize> {
+        os::unsent(&self.0.plain).ok()
+    }
+}
+
+/// The receiving side.
+pub(super) struct In(Arc<Way>);
+
+impl In {
+    /// One datagram of the peer's; those of others are dropped.
+    pub(super) async fn recv(&mut self, buffer: &mut Vec<u8>) -> io::Result<usize> {
+        let peer = self.0.known().await?;
+        loop {
+            let before = buffer.len();
+            buffer.reserve(LONGEST);
+            let (count, sender) = self.0.socket.recv_buf_from(buffer).await?;
+            if count > 0 && from_peer(peer, sender) {
+                return Ok(count);
+            }
+            buffer.truncate(before);
+        }
+    }
+}
+
+/// Whether `sender` may speak for `peer`: many hosts answer a broadcast, and a peer may answer from
+/// another of its ports.
+fn from_peer(peer: SocketAddr, sender: SocketAddr) -> bool {
+    let many = match peer.ip() {
+        IpAddr::V4(ip) => ip.is_broadcast() || ip.is_multicast() || ip.octets()[3] == 255,
+        IpAddr::V6(ip) => ip.is_multicast(),
+    };
+    many || peer.ip().is_unspecified() || peer.ip() == sender.ip()
+}

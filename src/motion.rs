@@ -1,0 +1,116 @@
+//! What is true: attitude, angular rate, specific force and field at any time, in closed form.
+//!
+//! A scene's motion is a list of segments. Each is a [`Motion`], evaluated from the segment's own start and never
+//! accumulated from samples, so that t may be asked in any order and an hour at full scale loses nothing.
+//! To add a kind: one file beside this one and one line in [`KINDS`].
+
+mod circle;
+mod cone;
+mod hold;
+mod rotate;
+mod trajectory;
+
+pub use trajectory::{Force, Push, Trajectory, Truth};
+
+use crate::double::Double;
+use crate::geometry::{Attitude, Body, Nav, Vector};
+use crate::keys::{Key, KeyError, Values};
+use crate::time::SimTime;
+use std::fmt::Debug;
+
+/// A segment of truth.
+pub trait Motion: Debug + Send + Sync {
+    /// Where the body is `t` seconds after the segment's start, having started at `start`.
+    fn at(&self, start: Attitude, t: Double) -> Kinematics;
+
+    /// The angular rate, if it is the same throughout.
+    fn constant_rate(&self) -> Option<Vector<Body>> {
+        None
+    }
+
+    /// A bound on how fast anything in it changes, rad/s: sets the panels of a mean over an interval.
+    fn fastest(&self) -> f64;
+}
+
+/// Attitude and what moves it.
+#[derive(Clone, Copy, Debug)]
+pub struct Kinematics {
+    /// Body to nav.
+    pub attitude: Attitude,
+    /// Angular rate of body relative to nav, rad/s.
+    pub rate: Vector<Body>,
+    /// Acceleration of the body's origin, m/s².
+    pub acceleration: Vector<Nav>,
+}
+
+/// What a motion's builder may need besides its own keys.
+#[derive(Clone, Copy, Debug)]
+pub struct Context {
+    /// How long the segment lasts.
+    pub duration: SimTime,
+    /// The strength of gravity, m/s².
+    pub gravity: f64,
+    /// +1 or −1: the sign that body y and z have in the scene's axes against Forward-Right-Down.
+    pub body_sign: f64,
+}
+
+/// A kind of motion: its name, its keys and how to build it.
+#[derive(Debug)]
+pub struct MotionKind {
+    /// As written in `kind = "…"`.
+    pub name: &'static str,
+    /// One line for `list motions`.
+    pub about: &'static str,
+    /// Its keys besides `kind` and `duration`.
+    pub keys: &'static [Key],
+    /// From values to a motion.
+    pub build: fn(&Values, &Context) -> Result<Box<dyn Motion>, KeyError>,
+}
+
+/// Every kind of motion.
+pub static KINDS: [&MotionKind; 4] = [&hold::KIND, &rotate::KIND, &cone::KIND, &circle::KIND];
+
+/// Standing still, after the last segment and when a scene has no motion.
+pub fn rest() -> Box<dyn Motion> {
+    Box::new(hold::Hold)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::geometry::log;
+
+    /// Central difference of the attitude against the rate: the test every kind of motion passes.
+    pub(crate) fn rate_is_the_derivative_of_attitude(motion: &dyn Motion, start: Attitude, duration: SimTime) {
+        let h = 20_000; // 20 µs: the truncation of h²/6·w″ and the rounding of ε/h are both near 10⁻¹⁰.
+        for i in 1..40 {
+            let t = duration.0 / 40 * i + 12_345;
+            let at = |ns| motion.at(start, SimTime(ns).exact_seconds());
+            let (before, after) = (at(t - h), at(t + h));
+            let turned = log(before.attitude.q.conjugate() * after.attitude.q) / (2.0 * h as f64 * 1e-9);
+            let mean = (before.rate.v + after.rate.v) / 2.0;
+            let slack = 1e-9 + 1e-7 * mean.length();
+            assert!((turned - mean).length() < slack, "{motion:?} at {t} ns: {turned} against {mean}");
+        }
+    }
+
+    /// A rate with a component swapped is not the derivative: the check above can fail.
+    #[test]
+    #[should_panic(expected = "against")]
+    fn the_derivative_check_sees_a_swapped_axis() {
+        #[derive(Debug)]
+        struct Swapped(Box<dyn Motion>);
+        impl Motion for Swapped {
+            fn at(&self, start: Attitude, t: Double) -> Kinematics {
+                let truth = self.0.at(start, t);
+                Kinematics { rate: Vector::from_vec(truth.rate.v.yxz()), ..truth }
+            }
+            fn fastest(&self) -> f64 {
+                self.0.fastest()
+            }
+        }
+        use glam::Vec3Swizzles;
+        let motion = Swapped(rotate::constant([0.1, 0.2, 0.3]));
+        rate_is_the_derivative_of_attitude(&motion, Attitude::IDENTITY, SimTime(1_000_000_000));
+    }
+}

@@ -1,0 +1,145 @@
+//! Turns a plan into readings in order of time, in blocks: the pure core that a live run and a dataset share.
+//!
+//! No clock, no I/O, no threads. The truth is evaluated once a distinct tick; each sensor due then gets its
+//! error-free reading from it and makes its own from that. Where blocks begin changes nothing.
+
+use crate::geometry::{Body, Vector};
+use crate::motion::{Trajectory, Truth};
+use crate::scene::Plan;
+use crate::schedule::{Due, Schedule, Ticks};
+use crate::sensor::{Block, Reading, Sampling, Sensor, SensorKind, SensorPlan};
+use crate::time::SimTime;
+
+/// How many distinct ticks a block holds unless told otherwise.
+pub const BLOCK: usize = 256;
+
+/// Everything due at one time: the truth and the readings, in the plan's order of sensors.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// When.
+    pub t: SimTime,
+    /// The exact truth then.
+    pub truth: &'a Truth,
+    /// One reading a sensor due.
+    pub readings: &'a [Reading],
+}
+
+struct Channel {
+    plan: SensorPlan,
+    sensor: Sensor,
+    block: Block,
+    /// Samples in earlier blocks.
+    done: u64,
+    /// Of the sample before, for the mean.
+    last: Option<SimTime>,
+}
+
+/// Plays a plan.
+pub struct Player<'a> {
+    trajectory: &'a Trajectory,
+    schedule: Schedule,
+    channels: Vec<Channel>,
+    due: Vec<Due>,
+    truth: Vec<Truth>,
+    block: usize,
+}
+
+impl<'a> Player<'a> {
+    /// Plays `plan` from 0 up to, not including, `end`; after the scene's motions the vehicle holds.
+    /// `block` is how many distinct ticks are computed at a time (at least 1).
+    pub fn new(plan: &'a Plan, end: SimTime, block: usize) -> Player<'a> {
+        let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
+        let channels = plan.sensors.iter().map(|sensor| Channel {
+            plan: sensor.clone(),
+            sensor: plan.build(sensor),
+            block: Block::default(),
+            done: 0,
+            last: None,
+        });
+        Player {
+            trajectory: &plan.trajectory,
+            schedule: Schedule::new(ticks, end),
+            channels: channels.collect(),
+            due: Vec::with_capacity(block),
+            truth: Vec::with_capacity(block),
+            block: block.max(1),
+        }
+    }
+
+    /// Computes the next block and hands each of its moments to `each`, in order of time; false at the end.
+    ///
+    /// # Errors
+    /// Whatever `each` returns stops the block and comes back.
+    pub fn play_block<E>(&mut self, mut each: impl FnMut(Moment<'_>) -> Result<(), E>) -> Result<bool, E> {
+        self.due.clear();
+        self.due.extend(self.schedule.by_ref().take(self.block));
+        if self.due.is_empty() {
+            return Ok(false);
+        }
+        self.truth.clear();
+        self.truth.extend(self.due.iter().map(|due| self.trajectory.at(due.t)));
+        for (i, channel) in self.channels.iter_mut().enumerate() {
+            channel.fill(i, &self.due, &self.truth, self.trajectory);
+        }
+        let mut at = [0; 32];
+        let mut readings = Vec::with_capacity(self.channels.len());
+        for (due, truth) in self.due.iter().zip(&self.truth) {
+            readings.clear();
+            for (i, channel) in self.channels.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1) {
+                readings.push(channel.reading(i, at[i]));
+                at[i] += 1;
+            }
+            each(Moment { t: due.t, truth, readings: &readings })?;
+        }
+        for channel in &mut self.channels {
+            channel.done += channel.block.len() as u64;
+        }
+        Ok(true)
+    }
+
+    /// Plays to the end.
+    ///
+    /// # Errors
+    /// Whatever `each` returns stops the playing and comes back.
+    pub fn play<E>(&mut self, mut each: impl FnMut(Moment<'_>) -> Result<(), E>) -> Result<(), E> {
+        while self.play_block(&mut each)? {}
+        Ok(())
+    }
+}
+
+impl Channel {
+    fn fill(&mut self, i: usize, due: &[Due], truth: &[Truth], trajectory: &Trajectory) {
+        self.block.clear();
+        for (due, truth) in due.iter().zip(truth).filter(|(due, _)| due.sensors >> i & 1 == 1) {
+            let seen = match (self.plan.sampling, self.last) {
+                (Sampling::Average, Some(last)) => trajectory.mean(last, due.t),
+                _ => *truth,
+            };
+            self.last = Some(due.t);
+            self.block.push(sensed(self.plan.kind, &seen).v.to_array());
+        }
+        self.sensor.read(&mut self.block);
+    }
+
+    fn reading(&self, sensor: usize, i: usize) -> Reading {
+        let at = |columns: &[Vec<f64>; 3]| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
+        Reading {
+            sensor,
+            kind: self.plan.kind,
+            k: self.done + i as u64,
+            value: at(&self.block.reading),
+            truth: at(&self.block.truth),
+            bias: at(&self.block.bias),
+            clipped: self.block.clipped[i],
+        }
+    }
+}
+
+/// What an error-free sensor of this kind reads.
+fn sensed(kind: SensorKind, truth: &Truth) -> Vector<Body> {
+    match kind {
+        SensorKind::Gyro => truth.rate,
+        SensorKind::Accel => truth.force,
+        SensorKind::Mag => truth.field,
+    }
+}

@@ -1,0 +1,204 @@
+//! A scene as written, and the plan that is checked and compiled from it.
+//!
+//! ```text
+//! TOML text ─ document (every value knows its place) ─ section (keys, units, defaults, draws) ─ Plan
+//! ```
+//!
+//! Every mistake of a scene is collected, each as one message with file, line, column, the bad value and what
+//! would be right. The plan carries the scene as resolved: every default, preset and drawn value filled in.
+
+pub mod builtin;
+pub mod document;
+mod output;
+mod section;
+mod sensors;
+mod suggest;
+mod vehicle;
+
+pub use document::Place;
+pub use output::{Destination, Output};
+pub use section::Drawn;
+pub use suggest::nearest;
+
+use crate::earth::Day;
+use crate::geometry::Axes;
+use crate::motion::Trajectory;
+use crate::sensor::{Sensor, SensorPlan};
+use crate::time::SimTime;
+use document::{Mistake, Table};
+use section::{Reader, Section};
+use std::fmt;
+use std::path::Path;
+
+/// A scene, checked and compiled: all that a run needs to know.
+#[derive(Debug)]
+pub struct Plan {
+    /// The scene's name.
+    pub name: String,
+    /// From which every random number comes.
+    pub seed: u64,
+    /// How long it lasts.
+    pub duration: SimTime,
+    /// How it is written, and the datasets made from it.
+    pub axes: Axes,
+    /// The scene's date, if it has one.
+    pub day: Option<Day>,
+    /// Limits of the report, such as `sensors.gyro.late_us.p99<200`, each with its place.
+    pub limits: Vec<(String, Place)>,
+    /// What is true.
+    pub trajectory: Trajectory,
+    /// What is sensed: gyro, accel, mag, as far as the scene has them.
+    pub sensors: Vec<SensorPlan>,
+    /// Where the scene itself sends its packets.
+    pub outputs: Vec<Output>,
+    /// Values drawn once for this run.
+    pub drawn: Vec<Drawn>,
+    /// The scene as resolved, in TOML: playing it gives the same bytes.
+    pub resolved: String,
+}
+
+impl Plan {
+    /// Reads a scene: a path to a TOML file or the name of a built-in, with `--set` overrides.
+    ///
+    /// # Errors
+    /// No such scene, or every mistake in it.
+    pub fn load(scene: &str, sets: &[String]) -> Result<Plan, SceneError> {
+        let (text, name) = match (builtin::text(scene), Path::new(scene)) {
+            (Some(text), path) if !path.exists() => (text.to_string(), format!("{scene} (built-in)")),
+            (_, path) => {
+                let unreadable = |error| SceneError::unreadable(scene, &error);
+                (std::fs::read_to_string(path).map_err(unreadable)?, scene.to_string())
+            }
+        };
+        let stem = Path::new(scene).file_stem().map_or(scene.to_string(), |stem| stem.to_string_lossy().into());
+        Plan::parse(&text, &name, &stem, sets)
+    }
+
+    /// Reads a scene's text. `source` is what messages call it, `name` its name unless it gives one.
+    ///
+    /// # Errors
+    /// Every mistake in it.
+    pub fn parse(text: &str, source: &str, name: &str, sets: &[String]) -> Result<Plan, SceneError> {
+        let one = |mistake| SceneError { mistakes: vec![mistake] };
+        let mut table = Table::parse(text, source).map_err(one)?;
+        for set in sets {
+            table.set(set).map_err(one)?;
+        }
+        let reader = Reader::new();
+        let plan = read(&reader, table, name);
+        match reader.finish() {
+            Ok(drawn) => plan.map(|plan| Plan { drawn, ..plan }).ok_or_else(|| SceneError::unreadable(source, &"nothing read")),
+            Err(mistakes) => Err(SceneError { mistakes }),
+        }
+    }
+
+    /// The sensor at work.
+    ///
+    /// # Panics
+    /// Never for a sensor of this plan: its terms were built once when the scene was read.
+    pub fn build(&self, sensor: &SensorPlan) -> Sensor {
+        Sensor::new(sensor, self.seed).unwrap_or_else(|error| unreachable!("checked when read: {error:?}"))
+    }
+}
+
+fn read(reader: &Reader, table: Table, name: &str) -> Option<Plan> {
+    let top = Section::new(reader, "", table);
+    let name = top.text("name", Some(name))?;
+    let seed = top.whole("seed", 0);
+    reader.seed.set(seed);
+    let axes = Axes::from_name(top.word("axes", &Axes::NAMES, Axes::NAMES[0])).unwrap_or_default();
+    reader.axes.set(axes);
+    let limits = top.texts("limits");
+
+    let start = vehicle::start(&top);
+    let earth = vehicle::earth(&top);
+    let motions = vehicle::motions(&top, earth.gravity.length());
+    let forces = vehicle::forces(&top);
+    let sensors = sensors::sensors(&top);
+    let outputs = output::outputs(&top, &sensors.plans);
+    let trajectory = Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
+    let duration = duration(&top, &trajectory);
+    if sensors.plans.is_empty() {
+        top.mistake("gyro", "a scene needs at least one of [gyro], [accel] and [mag]");
+    }
+
+    let mut resolved = top.finish();
+    for (key, table) in [("start", start.resolved), ("earth", earth.resolved)] {
+        resolved.insert(key.into(), table.into());
+    }
+    for (key, tables) in [("motion", motions.resolved), ("force", forces.resolved)] {
+        if !tables.is_empty() {
+            resolved.insert(key.into(), tables.into());
+        }
+    }
+    for (plan, table) in sensors.plans.iter().zip(sensors.resolved) {
+        resolved.insert(plan.kind.name().into(), table.into());
+    }
+    if !outputs.resolved.is_empty() {
+        resolved.insert("output".into(), outputs.resolved.into());
+    }
+    Some(Plan {
+        name,
+        seed,
+        duration,
+        axes,
+        day: earth.day,
+        limits,
+        trajectory,
+        sensors: sensors.plans,
+        outputs: outputs.outputs,
+        drawn: Vec::new(),
+        resolved: toml::to_string(&resolved).unwrap_or_default(),
+    })
+}
+
+/// As the scene says, or the sum of its motions.
+fn duration(top: &Section<'_>, trajectory: &Trajectory) -> SimTime {
+    let moving = trajectory.moving_until();
+    let default = (moving > SimTime::ZERO).then(|| moving.to_string());
+    let missing = !top.has("duration") && default.is_none();
+    match top.time("duration", default.as_deref()) {
+        Some(duration) if duration > SimTime::ZERO => duration,
+        _ => {
+            if missing {
+                top.mistake("duration", "the scene has neither a motion nor a duration: write, for example, duration = \"10 s\"");
+            } else if top.has("duration") {
+                top.mistake("duration", "a duration is above 0, such as \"10 s\"");
+            }
+            SimTime::ZERO
+        }
+    }
+}
+
+/// A scene that cannot be played: every mistake in it.
+#[derive(Clone, Debug)]
+pub struct SceneError {
+    /// At least one, in the order found.
+    pub mistakes: Vec<Mistake>,
+}
+
+impl SceneError {
+    fn unreadable(scene: &str, why: &dyn fmt::Display) -> SceneError {
+        let names = builtin::SCENES.map(|(name, _)| name);
+        let near = nearest(scene, names).map_or(String::new(), |near| format!("; did you mean the built-in `{near}`?"));
+        let message = format!("this is neither a scene file ({why}) nor a built-in scene ({}){near}", names.join(", "));
+        SceneError { mistakes: vec![Mistake { place: Place::whole(scene), message }] }
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, mistake) in self.mistakes.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n")?;
+            }
+            write!(f, "{mistake}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+#[cfg(test)]
+mod tests;

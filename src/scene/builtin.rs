@@ -1,0 +1,20 @@
+//! The scenes that come with the program.
+
+/// Name and text of each.
+pub const SCENES: [(&str, &str); 5] = [
+    ("table-1", include_str!("builtin/table-1.toml")),
+    ("still", include_str!("builtin/still.toml")),
+    ("coning", include_str!("builtin/coning.toml")),
+    ("manoeuvre", include_str!("builtin/manoeuvre.toml")),
+    ("mpu-9250", include_str!("builtin/mpu-9250.toml")),
+];
+
+/// The text of the built-in scene of that name.
+pub fn text(name: &str) -> Option<&'static str> {
+    SCENES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// What the first line of its text, a comment, says of it.
+pub fn about(text: &str) -> &str {
+    text.lines().next().unwrap_or_default().trim_start_matches(['#', ' '])
+}

@@ -1,0 +1,94 @@
+//! `[[output]]`: where the scene sends its packets.
+
+use super::section::Section;
+use super::suggest;
+use crate::link::Address;
+use crate::sensor::SensorPlan;
+use crate::wire::{self, Layout, Protocol};
+use std::fmt;
+use std::str::FromStr;
+
+/// `PROTOCOL@LINK`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Destination {
+    /// What the packets look like.
+    pub protocol: Protocol,
+    /// Where they go.
+    pub address: Address,
+}
+
+impl FromStr for Destination {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Destination, String> {
+        let names = Protocol::ALL.map(Protocol::name);
+        let Some((protocol, address)) = text.split_once('@') else {
+            return Err(format!("`{text}` is no PROTOCOL@LINK: write, for example, mpu@pty (protocols: {})", names.join(", ")));
+        };
+        let Some(protocol) = Protocol::from_name(protocol) else {
+            let near = suggest::nearest(protocol, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            return Err(format!("`{protocol}` is no protocol of this version ({}){near}", names.join(", ")));
+        };
+        let address = address.parse::<Address>().map_err(|error| error.to_string())?;
+        Ok(Destination { protocol, address })
+    }
+}
+
+impl fmt::Display for Destination {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}@{}", self.protocol.name(), self.address)
+    }
+}
+
+/// One output.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Where to.
+    pub to: Destination,
+    /// How the protocol lays its packets out.
+    pub wire: wire::Options,
+}
+
+impl Output {
+    /// An output of the command line: nothing but its destination.
+    pub fn to(to: Destination) -> Output {
+        Output { to, wire: wire::Options::default() }
+    }
+}
+
+pub(super) struct Outputs {
+    pub outputs: Vec<Output>,
+    pub resolved: Vec<toml::Value>,
+}
+
+/// Every `[[output]]`.
+pub(super) fn outputs(top: &Section<'_>, sensors: &[SensorPlan]) -> Outputs {
+    let mut all = Outputs { outputs: Vec::new(), resolved: Vec::new() };
+    for section in top.tables("output") {
+        all.outputs.extend(output(&section, sensors));
+        all.resolved.push(section.finish().into());
+    }
+    all
+}
+
+fn output(section: &Section<'_>, sensors: &[SensorPlan]) -> Option<Output> {
+    if !section.has("to") {
+        section.mistake("to", "an output needs a destination, such as to = \"mpu@pty\"");
+    }
+    let to = section.text("to", None)?;
+    let to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
+    let mut wire = wire::Options::default();
+    if section.has("layout") {
+        wire.layout = match section.word("layout", &["separate", "burst"], "separate") {
+            "burst" => Some(Layout::Burst),
+            _ => Some(Layout::Separate),
+        };
+        if to.protocol != Protocol::Mpu {
+            section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
+        }
+    }
+    if let Err(why) = wire::check(to.protocol, &wire, sensors) {
+        section.mistake("to", why);
+    }
+    Some(Output { to, wire })
+}

@@ -1,0 +1,52 @@
+//! What a user may have meant: the nearest known name, or ours for a name from another tool.
+
+/// The known name nearest to `given`, if it is near.
+pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = given.to_lowercase();
+    known
+        .into_iter()
+        .map(|name| (name, strsim::jaro_winkler(&lower, &name.to_lowercase())))
+        .filter(|&(_, likeness)| likeness > 0.75)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(name, _)| name)
+}
+
+/// What a key known from another tool is called here.
+pub fn elsewhere(key: &str) -> Option<&'static str> {
+    let answer = match key {
+        "gyroscope_noise_density" => "is Kalibr's name; here it is `angle_random_walk` in [gyro] (Kalibr's densities are two-sided)",
+        "accelerometer_noise_density" => "is Kalibr's name; here it is `velocity_random_walk` in [accel] (Kalibr's densities are two-sided)",
+        "gyroscope_random_walk" | "accelerometer_random_walk" => "is Kalibr's name; here it is `bias_random_walk` in [gyro] or [accel]",
+        "update_rate" => "is Kalibr's name; here it is `rate`",
+        "NoiseDensity" => "is MATLAB's name; here it is `noise_density` (its single-sided NoiseType) or `angle_random_walk` (its double-sided one)",
+        "MeasurementRange" => "is MATLAB's name; here it is `range`",
+        "Resolution" => "is MATLAB's name; here it is `resolution`",
+        "ConstantBias" => "is MATLAB's name; here it is `bias`",
+        "BiasInstability" => "is MATLAB's name; here it is `bias_instability` with a `correlation_time`",
+        "RandomWalk" => "is MATLAB's name; here it is `bias_random_walk`",
+        "SampleRate" | "odr" | "ODR" | "frequency" => "is spelled `rate` here",
+        "sigma" | "std" | "stddev" | "noise" => "is spelled `noise_std` here",
+        "variance" => "is spelled `noise_variance` here",
+        "bias_stability" => "is spelled `bias_instability` here, with a `correlation_time`",
+        "arw" | "ARW" => "is spelled `angle_random_walk` here",
+        "vrw" | "VRW" => "is spelled `velocity_random_walk` here",
+        "AxesMisalignment" | "misalignment" | "scale_error" | "matrix" | "nonlinearity" | "g_sensitivity"
+        | "temperature" | "bias_temperature" | "scale_temperature" | "filter" | "delay" | "clock_error"
+        | "hard_iron" | "soft_iron" | "lever_arm" | "vibration" => "names an effect that this version does not model",
+        _ => return None,
+    };
+    Some(answer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_finds_its_key_and_nonsense_finds_none() {
+        let known = ["rate", "noise_density", "noise_std", "bias", "part"];
+        assert_eq!(nearest("noise_densty", known), Some("noise_density"));
+        assert_eq!(nearest("Rate", known), Some("rate"));
+        assert_eq!(nearest("xyzzy", known), None);
+    }
+}

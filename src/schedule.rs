@@ -1,0 +1,93 @@
+//! Which sensors are due when: every distinct tick in order, exact.
+
+use crate::time::{Rate, SimTime};
+
+/// A sensor's ticks: its rate and when tick 0 is due.
+#[derive(Clone, Copy, Debug)]
+pub struct Ticks {
+    /// Output data rate.
+    pub rate: Rate,
+    /// When tick 0 is due.
+    pub phase: SimTime,
+}
+
+/// One distinct time and the sensors due then.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Due {
+    /// When.
+    pub t: SimTime,
+    /// Bit i is set when sensor i is due.
+    pub sensors: u32,
+}
+
+/// Iterates over the distinct ticks in `[0, end)` of at most 32 sensors.
+#[derive(Clone, Debug)]
+pub struct Schedule {
+    sensors: Vec<(Ticks, u64, SimTime)>,
+    end: SimTime,
+}
+
+impl Schedule {
+    /// Of these sensors, up to but not including `end`.
+    pub fn new(sensors: impl IntoIterator<Item = Ticks>, end: SimTime) -> Schedule {
+        Schedule { sensors: sensors.into_iter().map(|ticks| (ticks, 0, ticks.phase)).collect(), end }
+    }
+}
+
+impl Iterator for Schedule {
+    type Item = Due;
+
+    fn next(&mut self) -> Option<Due> {
+        let t = self.sensors.iter().map(|&(_, _, next)| next).min().filter(|&t| t < self.end)?;
+        let mut sensors = 0;
+        for (i, (ticks, k, next)) in self.sensors.iter_mut().enumerate() {
+            if *next == t {
+                sensors |= 1 << i;
+                *k += 1;
+                *next = ticks.phase + ticks.rate.tick(*k);
+            }
+        }
+        Some(Due { t, sensors })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(hz: u32) -> Ticks {
+        Ticks { rate: Rate::hz(hz), phase: SimTime::ZERO }
+    }
+
+    #[test]
+    fn ticks_that_coincide_are_one_due_time() {
+        let due: Vec<_> = Schedule::new([at(1000), at(500)], SimTime(3_000_000)).collect();
+        let expected = [(0, 0b11), (1_000_000, 0b01), (2_000_000, 0b11)];
+        assert_eq!(due, expected.map(|(t, sensors)| Due { t: SimTime(t), sensors }));
+    }
+
+    #[test]
+    fn every_sensor_gets_exactly_its_own_ticks_in_order() {
+        let sensors = [
+            at(8000),
+            Ticks { rate: Rate::new(400, 3).unwrap(), phase: SimTime(1234) },
+            Ticks { rate: Rate::hz(1125), phase: SimTime::ZERO },
+        ];
+        let end = SimTime(2_000_000_001);
+        let mut counts = [0u64; 3];
+        let mut last = SimTime(-1);
+        for due in Schedule::new(sensors, end) {
+            assert!(due.t > last && due.t < end);
+            last = due.t;
+            for (i, ticks) in sensors.iter().enumerate() {
+                if due.sensors >> i & 1 == 1 {
+                    assert_eq!(due.t, ticks.phase + ticks.rate.tick(counts[i]));
+                    counts[i] += 1;
+                }
+            }
+        }
+        for (count, ticks) in counts.iter().zip(sensors) {
+            assert_eq!(*count, ticks.rate.ticks_before(ticks.phase, end));
+        }
+    }
+}

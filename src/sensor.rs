@@ -1,0 +1,332 @@
+//! What a part reads: the truth with the errors the scene switches on, and no others.
+//!
+//! Each error is a [`Term`] in a file of its own; a sensor is compiled to the list of terms its scene uses, so a
+//! term that is absent costs nothing. The chain is truth → biases → white noise → range → resolution → reading.
+//! To add a term: one file beside this one and one line in [`TERMS`].
+
+mod bias;
+mod bias_instability;
+mod bias_walk;
+pub mod mount;
+pub mod parts;
+mod range;
+mod resolution;
+pub mod white_noise;
+
+pub use mount::Mount;
+pub use resolution::lsb;
+
+use crate::geometry::{Body, Vector};
+use crate::keys::{Key, KeyError, Values};
+use crate::quantity::Kind;
+use crate::random::{self, Stream};
+use crate::time::{Rate, SimTime};
+use std::fmt;
+
+/// What is sensed. The order is that in which readings due together go out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SensorKind {
+    /// Angular rate, rad/s.
+    Gyro,
+    /// Specific force, m/s².
+    Accel,
+    /// Magnetic field, µT.
+    Mag,
+}
+
+impl SensorKind {
+    /// Every kind, in order.
+    pub const ALL: [SensorKind; 3] = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag];
+
+    /// As scenes, reports and files call it.
+    pub const fn name(self) -> &'static str {
+        ["gyro", "accel", "mag"][self as usize]
+    }
+
+    /// The unit of a reading as a scene spells it.
+    pub const fn unit(self) -> &'static str {
+        ["rad/s", "m/s^2", "uT"][self as usize]
+    }
+
+    /// The unit of a reading as it ends a column's name.
+    pub const fn column_unit(self) -> &'static str {
+        ["rad_s", "m_s2", "ut"][self as usize]
+    }
+
+    /// Which units this sensor's keys take.
+    pub const fn units(self) -> &'static Units {
+        match self {
+            SensorKind::Gyro => &GYRO_UNITS,
+            SensorKind::Accel => &ACCEL_UNITS,
+            SensorKind::Mag => &MAG_UNITS,
+        }
+    }
+}
+
+impl fmt::Display for SensorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The kinds of quantity that one sensor's keys take.
+#[derive(Debug)]
+pub struct Units {
+    /// A reading, its bias and its σ.
+    pub reading: Kind,
+    /// Its square.
+    pub variance: Kind,
+    /// A one-sided noise density.
+    pub density: Kind,
+    /// The key and kind of the random walk of the reading's integral, where the field has a name for it.
+    pub random_walk: Option<(&'static str, Kind)>,
+    /// The driving noise of a bias walk.
+    pub bias_walk: Kind,
+    /// The size of a count, counts a unit, or bits.
+    pub resolution: Kind,
+}
+
+static GYRO_UNITS: Units = Units {
+    reading: Kind::ANGULAR_RATE,
+    variance: Kind::GYRO_VARIANCE,
+    density: Kind::GYRO_DENSITY,
+    random_walk: Some(("angle_random_walk", Kind::ANGLE_RANDOM_WALK)),
+    bias_walk: Kind::GYRO_WALK,
+    resolution: Kind::GYRO_RESOLUTION,
+};
+static ACCEL_UNITS: Units = Units {
+    reading: Kind::ACCELERATION,
+    variance: Kind::ACCEL_VARIANCE,
+    density: Kind::ACCEL_DENSITY,
+    random_walk: Some(("velocity_random_walk", Kind::VELOCITY_RANDOM_WALK)),
+    bias_walk: Kind::ACCEL_WALK,
+    resolution: Kind::ACCEL_RESOLUTION,
+};
+static MAG_UNITS: Units = Units {
+    reading: Kind::FIELD,
+    variance: Kind::MAG_VARIANCE,
+    density: Kind::MAG_DENSITY,
+    random_walk: None,
+    bias_walk: Kind::MAG_WALK,
+    resolution: Kind::MAG_RESOLUTION,
+};
+
+/// How a reading samples the truth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampling {
+    /// The truth at the tick, as in the paper.
+    #[default]
+    Point,
+    /// The mean over the interval that ends at the tick: what an integrating sensor sees.
+    Average,
+}
+
+/// A sensor as a scene asks for it.
+#[derive(Clone, Debug)]
+pub struct SensorPlan {
+    /// What is sensed.
+    pub kind: SensorKind,
+    /// Output data rate.
+    pub rate: Rate,
+    /// When tick 0 is due.
+    pub phase: SimTime,
+    /// Point or average.
+    pub sampling: Sampling,
+    /// From body to chip axes; `None` where the scene says nothing, so that a protocol may use its own default.
+    pub mount: Option<Mount>,
+    /// The part it imitates, by the name of its data file.
+    pub part: Option<&'static str>,
+    /// The values of its error terms' keys.
+    pub values: Values,
+}
+
+impl SensorPlan {
+    /// What its error terms are built from.
+    pub fn context(&self, seed: u64) -> Context {
+        let mount = self.mount.unwrap_or_default();
+        Context { sensor: self.kind, rate: self.rate, mount, seed }
+    }
+}
+
+/// One sensor's output, in body axes (Forward-Right-Down) and the sensor's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Which of the plan's sensors.
+    pub sensor: usize,
+    /// What is sensed.
+    pub kind: SensorKind,
+    /// Which tick of that sensor.
+    pub k: u64,
+    /// What the part reads.
+    pub value: Vector<Body>,
+    /// The error-free reading.
+    pub truth: Vector<Body>,
+    /// The bias in effect.
+    pub bias: Vector<Body>,
+    /// Whether the value left the range.
+    pub clipped: bool,
+}
+
+impl Reading {
+    /// A reading of zero, where only its being there matters.
+    pub fn zero(sensor: usize, kind: SensorKind) -> Reading {
+        let zero = Vector::ZERO;
+        Reading { sensor, kind, k: 0, value: zero, truth: zero, bias: zero, clipped: false }
+    }
+}
+
+/// What an error term is built from, besides its keys.
+#[derive(Clone, Copy, Debug)]
+pub struct Context {
+    /// Whose term it is.
+    pub sensor: SensorKind,
+    /// The sensor's output data rate.
+    pub rate: Rate,
+    /// From body to chip axes.
+    pub mount: Mount,
+    /// The scene's seed.
+    pub seed: u64,
+}
+
+impl Context {
+    /// The three streams of the term called `term`.
+    pub fn streams(&self, term: &str) -> [Stream; 3] {
+        random::axes(self.seed, &format!("{}/{term}", self.sensor))
+    }
+}
+
+/// A run of consecutive samples of one sensor, in body axes, one column an axis.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// The error-free reading.
+    pub truth: [Vec<f64>; 3],
+    /// The bias in effect.
+    pub bias: [Vec<f64>; 3],
+    /// What the part reads.
+    pub reading: [Vec<f64>; 3],
+    /// Whether the reading left the range.
+    pub clipped: Vec<bool>,
+}
+
+impl Block {
+    /// How many samples it holds.
+    pub fn len(&self) -> usize {
+        self.truth[0].len()
+    }
+
+    /// Whether it holds none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Forgets its samples and keeps its memory.
+    pub fn clear(&mut self) {
+        self.truth.iter_mut().chain(&mut self.bias).chain(&mut self.reading).for_each(Vec::clear);
+        self.clipped.clear();
+    }
+
+    /// Adds a sample by its error-free reading.
+    pub fn push(&mut self, truth: [f64; 3]) {
+        for (column, value) in self.truth.iter_mut().zip(truth) {
+            column.push(value);
+        }
+    }
+}
+
+/// One error of one sensor, applied to its samples in order; what it does never depends on where blocks begin.
+pub trait Term: Send {
+    /// Changes the bias or the reading of every sample of the block.
+    fn apply(&mut self, block: &mut Block);
+}
+
+/// Where in the chain a term acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Adds to the bias.
+    Bias,
+    /// Changes the reading, bias included.
+    Reading,
+}
+
+/// What a builder makes of a term's values: nothing, when the scene does not use it.
+pub type Built = Result<Option<Box<dyn Term>>, KeyError>;
+
+/// An error term: its name, its keys and how to build it.
+pub struct TermKind {
+    /// As `check` and the docs call it; also the name of its streams.
+    pub name: &'static str,
+    /// One line for the docs.
+    pub about: &'static str,
+    /// Where it acts.
+    pub stage: Stage,
+    /// Its keys for a sensor.
+    pub keys: fn(SensorKind) -> Vec<Key>,
+    /// From values to a term.
+    pub build: fn(&Values, &Context) -> Built,
+}
+
+/// Every error term, in the order of the chain.
+pub static TERMS: [&TermKind; 6] =
+    [&bias::KIND, &bias_instability::KIND, &bias_walk::KIND, &white_noise::KIND, &range::KIND, &resolution::KIND];
+
+/// Every key of a sensor's error terms.
+pub fn keys(sensor: SensorKind) -> Vec<Key> {
+    TERMS.iter().flat_map(|term| (term.keys)(sensor)).collect()
+}
+
+/// A sensor at work: the terms its scene uses.
+pub struct Sensor {
+    biases: Vec<Box<dyn Term>>,
+    readings: Vec<Box<dyn Term>>,
+    names: Vec<&'static str>,
+}
+
+impl Sensor {
+    /// Compiles a plan; `seed` is the scene's.
+    ///
+    /// # Errors
+    /// The key whose value cannot be, and what would be right.
+    pub fn new(plan: &SensorPlan, seed: u64) -> Result<Sensor, KeyError> {
+        let mut sensor = Sensor { biases: Vec::new(), readings: Vec::new(), names: Vec::new() };
+        for kind in TERMS {
+            if let Some(term) = (kind.build)(&plan.values, &plan.context(seed))? {
+                sensor.names.push(kind.name);
+                match kind.stage {
+                    Stage::Bias => sensor.biases.push(term),
+                    Stage::Reading => sensor.readings.push(term),
+                }
+            }
+        }
+        Ok(sensor)
+    }
+
+    /// The names of its terms, in order.
+    pub fn terms(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    /// Fills bias, reading and clipped of a block whose truth is given; blocks come in order of time.
+    pub fn read(&mut self, block: &mut Block) {
+        let n = block.len();
+        for axis in 0..3 {
+            block.bias[axis].clear();
+            block.bias[axis].resize(n, 0.0);
+        }
+        block.clipped.clear();
+        block.clipped.resize(n, false);
+        for term in &mut self.biases {
+            term.apply(block);
+        }
+        for axis in 0..3 {
+            let sum = block.truth[axis].iter().zip(&block.bias[axis]).map(|(truth, bias)| truth + bias);
+            block.reading[axis].clear();
+            block.reading[axis].extend(sum);
+        }
+        for term in &mut self.readings {
+            term.apply(block);
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

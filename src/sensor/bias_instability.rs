@@ -1,0 +1,84 @@
+//! Bias instability as a first-order Gauss-Markov process.
+//!
+//! `b ← e^(−dt/τ)·b + σ·√(1 − e^(−2dt/τ))·n`, the exact discretisation, with stationary σ = `bias_instability` and
+//! τ = `correlation_time`, started from its stationary distribution unless asked to start from zero. Its Allan
+//! deviation peaks at 0.617 σ, at 1.89 τ (IEEE Std 952-1997, annex C).
+
+use super::{Block, Stage, Term, TermKind};
+use crate::keys::{Key, KeyError, Takes};
+use crate::quantity::Kind;
+use crate::random::Stream;
+use glam::DVec3;
+use rand_distr::{Distribution, StandardNormal};
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "bias_instability",
+    about: "the bias wanders as a first-order Gauss-Markov process",
+    stage: Stage::Bias,
+    keys: |sensor| {
+        let reading = sensor.units().reading;
+        vec![
+            Key {
+                name: "bias_instability",
+                takes: Takes::PerAxis(reading),
+                default: Some("0"),
+                about: "stationary standard deviation of the wandering bias; needs `correlation_time`",
+            },
+            Key {
+                name: "correlation_time",
+                takes: Takes::PerAxis(Kind::TIME),
+                default: None,
+                about: "in which the wandering bias forgets all but 1/e of itself",
+            },
+            Key {
+                name: "bias_instability_start",
+                takes: Takes::Word(&["stationary", "zero"]),
+                default: Some("stationary"),
+                about: "where the wandering bias starts: drawn from its distribution, or at zero",
+            },
+        ]
+    },
+    build: |values, context| {
+        let sigma = values.vector("bias_instability").unwrap_or_default();
+        let Some(tau) = values.vector("correlation_time") else {
+            return match sigma == DVec3::ZERO {
+                true => Ok(None),
+                false => Err(KeyError::new("bias_instability", "needs a `correlation_time` beside it, such as \"500 s\"; for a bias that wanders without bound use `bias_random_walk`")),
+            };
+        };
+        if tau.min_element() <= 0.0 {
+            return Err(KeyError::new("correlation_time", "a correlation time is above 0; a bias renewed at each sample is white noise: use `noise_std`"));
+        }
+        if sigma == DVec3::ZERO {
+            return Ok(None);
+        }
+        let steps = context.rate.period() / tau;
+        let decay = DVec3::from_array(steps.to_array().map(|x| libm::exp(-x)));
+        let fresh = DVec3::from_array(steps.to_array().map(|x| libm::sqrt(-libm::expm1(-2.0 * x))));
+        let mut streams = context.streams("bias_instability");
+        let start = DVec3::from_array(streams.each_mut().map(|stream| StandardNormal.sample(stream)));
+        let bias = if values.word("bias_instability_start") == Some("zero") { DVec3::ZERO } else { sigma * start };
+        Ok(Some(Box::new(GaussMarkov { bias, decay, step: sigma * fresh, streams })))
+    },
+};
+
+struct GaussMarkov {
+    bias: DVec3,
+    decay: DVec3,
+    step: DVec3,
+    streams: [Stream; 3],
+}
+
+impl Term for GaussMarkov {
+    fn apply(&mut self, block: &mut Block) {
+        for axis in (0..3).filter(|&axis| self.step[axis] != 0.0) {
+            let (mut state, stream) = (self.bias[axis], &mut self.streams[axis]);
+            for bias in &mut block.bias[axis] {
+                *bias += state;
+                let n: f64 = StandardNormal.sample(stream);
+                state = self.decay[axis] * state + self.step[axis] * n;
+            }
+            self.bias[axis] = state;
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Bias walk: the paper's per-sample step, and the rate random walk of IEEE 952.
+//!
+//! `b ← b + σ·n` after each sample, with σ = `bias_step_std` (paper: `n_bg`, whatever the rate), or
+//! σ = K·√dt with K = `bias_random_walk`, whose growth K·√t does not depend on the rate.
+
+use super::{Block, Context, Stage, Term, TermKind};
+use crate::keys::{Key, Takes, Values};
+use crate::random::Stream;
+use glam::DVec3;
+use rand_distr::{Distribution, StandardNormal};
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "bias_walk",
+    about: "the bias takes a normal step after each sample",
+    stage: Stage::Bias,
+    keys: |sensor| {
+        let units = sensor.units();
+        vec![
+            Key {
+                name: "bias_step_std",
+                takes: Takes::PerAxis(units.reading),
+                default: Some("0"),
+                about: "standard deviation of the bias's step each sample (the paper's n_b)",
+            },
+            Key {
+                name: "bias_random_walk",
+                takes: Takes::PerAxis(units.bias_walk),
+                default: Some("0"),
+                about: "IEEE 952 rate random walk K: the bias grows as K·√t whatever the rate",
+            },
+        ]
+    },
+    build: |values, context| {
+        let step = step(values, context);
+        Ok((step != DVec3::ZERO).then(|| {
+            Box::new(Walk { step, bias: DVec3::ZERO, streams: context.streams("bias_walk") }) as Box<dyn Term>
+        }))
+    },
+};
+
+/// The σ of one step; the two independent walks add in variance.
+fn step(values: &Values, context: &Context) -> DVec3 {
+    let per_sample = values.vector("bias_step_std").unwrap_or_default();
+    let per_root_second = values.vector("bias_random_walk").unwrap_or_default() * libm::sqrt(context.rate.period());
+    DVec3::from_array([0, 1, 2].map(|axis| libm::hypot(per_sample[axis], per_root_second[axis])))
+}
+
+struct Walk {
+    step: DVec3,
+    bias: DVec3,
+    streams: [Stream; 3],
+}
+
+impl Term for Walk {
+    fn apply(&mut self, block: &mut Block) {
+        for axis in (0..3).filter(|&axis| self.step[axis] != 0.0) {
+            let (mut walk, step, stream) = (self.bias[axis], self.step[axis], &mut self.streams[axis]);
+            for bias in &mut block.bias[axis] {
+                *bias += walk;
+                let n: f64 = StandardNormal.sample(stream);
+                walk += step * n;
+            }
+            self.bias[axis] = walk;
+        }
+    }
+}

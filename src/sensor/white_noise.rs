@@ -1,0 +1,94 @@
+//! White noise: a fresh normal number each sample.
+//!
+//! Its size may be given per sample (`noise_std`, `noise_variance`: the paper), as a one-sided density N
+//! (`noise_density`, what part datasheets print: σ = N·√(fs/2)), or as the Allan deviation at 1 s
+//! (`angle_random_walk`, `velocity_random_walk`, what Kalibr calls a noise density: σ = N·√fs).
+//! `noise_density = √2 · random walk`: the factor on which users of every tool trip.
+
+use super::{Block, SensorKind, Stage, Term, TermKind};
+use crate::keys::{Key, KeyError, Takes, Values};
+use crate::quantity::Kind;
+use crate::random::Stream;
+use crate::time::Rate;
+use glam::DVec3;
+use rand_distr::{Distribution, StandardNormal};
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "white_noise",
+    about: "a fresh normal number each sample",
+    stage: Stage::Reading,
+    keys: |sensor| {
+        let units = sensor.units();
+        let mut keys = vec![
+            key("noise_std", units.reading, "standard deviation of each sample, whatever the rate"),
+            key("noise_variance", units.variance, "variance of each sample, whatever the rate (the paper's)"),
+            key("noise_density", units.density, "one-sided density, as datasheets print it: σ = N·√(rate/2)"),
+        ];
+        if let Some((name, kind)) = units.random_walk {
+            keys.push(key(name, kind, "Allan deviation at 1 s, Kalibr's noise density: σ = N·√rate"));
+        }
+        keys
+    },
+    build: |values, context| {
+        let sigma = sigma(values, context.sensor, context.rate)?;
+        Ok((sigma != DVec3::ZERO)
+            .then(|| Box::new(WhiteNoise { sigma, streams: context.streams("white_noise") }) as Box<dyn Term>))
+    },
+};
+
+/// The keys of which at most one may be given for an axis.
+pub const KEYS: [&str; 5] =
+    ["noise_std", "noise_variance", "noise_density", "angle_random_walk", "velocity_random_walk"];
+
+fn key(name: &'static str, kind: Kind, about: &'static str) -> Key {
+    Key { name, takes: Takes::PerAxis(kind), default: None, about }
+}
+
+/// The standard deviation of one sample at the given rate, per axis, in the reading's unit.
+///
+/// # Errors
+/// A negative value, or two keys for one axis.
+pub fn sigma(values: &Values, sensor: SensorKind, rate: Rate) -> Result<DVec3, KeyError> {
+    let mut sigma = DVec3::ZERO;
+    let mut first: Option<(&str, DVec3)> = None;
+    for key in KEYS {
+        let Some(given) = values.vector(key) else { continue };
+        if given.min_element() < 0.0 {
+            return Err(KeyError::new(key, "the size of a noise is not negative"));
+        }
+        if let Some((other, before)) = first
+            && (0..3).any(|axis| before[axis] * given[axis] != 0.0 || (before == DVec3::ZERO || given == DVec3::ZERO))
+        {
+            return Err(KeyError::new(key, format!("`{other}` already gives the {sensor}'s white noise: keep one of the two")));
+        }
+        first = Some((key, given));
+        sigma += per_sample(key, given, rate);
+    }
+    Ok(sigma)
+}
+
+fn per_sample(key: &str, given: DVec3, rate: Rate) -> DVec3 {
+    match key {
+        "noise_std" => given,
+        "noise_variance" => DVec3::from_array(given.to_array().map(libm::sqrt)),
+        "noise_density" => given * libm::sqrt(rate.as_hz() / 2.0),
+        _ => given * libm::sqrt(rate.as_hz()),
+    }
+}
+
+struct WhiteNoise {
+    sigma: DVec3,
+    streams: [Stream; 3],
+}
+
+impl Term for WhiteNoise {
+    fn apply(&mut self, block: &mut Block) {
+        for axis in (0..3).filter(|&axis| self.sigma[axis] != 0.0) {
+            let (sigma, stream) = (self.sigma[axis], &mut self.streams[axis]);
+            for reading in &mut block.reading[axis] {
+                let n: f64 = StandardNormal.sample(stream);
+                *reading += sigma * n;
+            }
+        }
+    }
+}

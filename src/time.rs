@@ -1,0 +1,181 @@
+//! Scene time and exact rates.
+//!
+//! Time is an integer count of nanoseconds and a rate is a fraction, so the k-th tick is computed from k and
+//! never accumulated: it is exact after days, at 1 kHz as at 1125 Hz or 400/3 Hz.
+
+use crate::double::Double;
+use std::fmt;
+
+/// Nanoseconds in a second.
+pub const NANOS: i64 = 1_000_000_000;
+
+/// A time in nanoseconds since the scene's start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SimTime(pub i64);
+
+impl SimTime {
+    /// The scene's start.
+    pub const ZERO: SimTime = SimTime(0);
+    /// Later than every tick: a scene played `forever` ends here.
+    pub const FOREVER: SimTime = SimTime(i64::MAX);
+
+    /// Seconds, rounded to the nearest double.
+    pub fn seconds(self) -> f64 {
+        self.0 as f64 / NANOS as f64
+    }
+
+    /// Seconds as a hi + lo pair: exact to 10⁻³¹ of itself.
+    pub fn exact_seconds(self) -> Double {
+        /// 10⁻⁹ and what its nearest double leaves of it.
+        const NANO: Double = Double::new(1e-9, -6.228_159_145_777_985e-26);
+        Double::from(self.0) * NANO
+    }
+}
+
+impl std::ops::Add for SimTime {
+    type Output = SimTime;
+    fn add(self, other: SimTime) -> SimTime {
+        SimTime(self.0.saturating_add(other.0))
+    }
+}
+
+impl std::ops::Sub for SimTime {
+    type Output = SimTime;
+    fn sub(self, other: SimTime) -> SimTime {
+        SimTime(self.0.saturating_sub(other.0))
+    }
+}
+
+impl fmt::Display for SimTime {
+    /// Seconds with at most nine decimals and no trailing zeros: `12.5 s`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (sign, ns) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
+        let (whole, rest) = (ns / NANOS as u64, ns % NANOS as u64);
+        if rest == 0 {
+            return write!(f, "{sign}{whole} s");
+        }
+        let digits = format!("{rest:09}");
+        write!(f, "{sign}{whole}.{} s", digits.trim_end_matches('0'))
+    }
+}
+
+/// An exact rate in hertz: the fraction `numerator / denominator`, reduced, above zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Rate {
+    numerator: u64,
+    denominator: u64,
+}
+
+impl Rate {
+    /// The rate `numerator / denominator` Hz, or `None` if either is zero.
+    pub fn new(numerator: u64, denominator: u64) -> Option<Rate> {
+        if numerator == 0 || denominator == 0 {
+            return None;
+        }
+        let divisor = gcd(numerator, denominator);
+        Some(Rate { numerator: numerator / divisor, denominator: denominator / divisor })
+    }
+
+    /// A whole number of hertz, above zero.
+    pub const fn hz(hertz: u32) -> Rate {
+        assert!(hertz > 0);
+        Rate { numerator: hertz as u64, denominator: 1 }
+    }
+
+    /// Hertz, rounded to the nearest double.
+    pub fn as_hz(self) -> f64 {
+        self.numerator as f64 / self.denominator as f64
+    }
+
+    /// The nominal time between two ticks in seconds.
+    pub fn period(self) -> f64 {
+        self.denominator as f64 / self.numerator as f64
+    }
+
+    /// When tick `k` is due after tick 0: `round(k * denominator * 10⁹ / numerator)` ns, halves up.
+    pub fn tick(self, k: u64) -> SimTime {
+        let (p, q) = (i128::from(self.numerator), i128::from(self.denominator));
+        let scaled = i128::from(k) * q * i128::from(NANOS);
+        let ns = (2 * scaled + p).div_euclid(2 * p);
+        SimTime(i64::try_from(ns).unwrap_or(i64::MAX))
+    }
+
+    /// How many ticks fall in `[0, end)` when tick 0 is due at `phase`.
+    pub fn ticks_before(self, phase: SimTime, end: SimTime) -> u64 {
+        let span = i128::from(end.0) - i128::from(phase.0);
+        if span <= 0 {
+            return 0;
+        }
+        let (p, q) = (i128::from(self.numerator), i128::from(self.denominator));
+        let mut k = (span * p / (q * i128::from(NANOS))) as u64;
+        while phase + self.tick(k) >= end && k > 0 {
+            k -= 1;
+        }
+        while phase + self.tick(k) < end && self.tick(k) < SimTime::FOREVER {
+            k += 1;
+        }
+        k
+    }
+}
+
+impl fmt::Display for Rate {
+    /// As a scene spells it: `1000 Hz`, `400/3 Hz`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.denominator {
+            1 => write!(f, "{} Hz", self.numerator),
+            q => write!(f, "{}/{q} Hz", self.numerator),
+        }
+    }
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kth_tick_is_exact_after_days() {
+        let day_s = 86_400;
+        for (rate, per_day) in [
+            (Rate::hz(1000), 1000 * day_s),
+            (Rate::hz(1125), 1125 * day_s),
+            (Rate::new(400, 3).unwrap(), 400 * day_s / 3),
+            (Rate::hz(8000), 8000 * day_s),
+        ] {
+            for days in [1, 10, 100] {
+                assert_eq!(rate.tick(per_day * days), SimTime((day_s * days) as i64 * NANOS), "{rate}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_tick_is_the_nearest_nanosecond_to_its_exact_time() {
+        let rate = Rate::new(400, 3).unwrap();
+        assert_eq!([0, 1, 2, 3].map(|k| rate.tick(k).0), [0, 7_500_000, 15_000_000, 22_500_000]);
+        let rate = Rate::hz(1125);
+        assert_eq!([1, 2, 9].map(|k| rate.tick(k).0), [888_889, 1_777_778, 8_000_000]);
+    }
+
+    #[test]
+    fn ticks_before_counts_what_iteration_counts() {
+        for rate in [Rate::hz(1000), Rate::hz(1125), Rate::new(400, 3).unwrap(), Rate::hz(3)] {
+            for phase in [0, 1, 333_333_333] {
+                for end in [1, 888_889, 999_999_999, NANOS, NANOS + 1, 2_345_678_901] {
+                    let by_hand = (0..).take_while(|&k| phase + rate.tick(k).0 < end).count() as u64;
+                    assert_eq!(rate.ticks_before(SimTime(phase), SimTime(end)), by_hand, "{rate} {phase} {end}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn times_and_rates_read_as_a_scene_spells_them() {
+        assert_eq!(SimTime(5 * NANOS).to_string(), "5 s");
+        assert_eq!(SimTime(-1_500_000_000).to_string(), "-1.5 s");
+        assert_eq!(SimTime(1).to_string(), "0.000000001 s");
+        assert_eq!(Rate::new(1200, 9).unwrap().to_string(), "400/3 Hz");
+    }
+}

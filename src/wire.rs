@@ -1,0 +1,227 @@
+//! Readings to packets: the only room that knows both the sensors and the protocols.
+//!
+//! Each protocol is one file with an [`Encoder`]; what comes back is decoded in `answer`. Conversion from the
+//! program's axes (Forward-Right-Down, SI, µT) to a protocol's own happens here and nowhere else.
+//! To add a protocol: one file in the `protocols` crate, one beside this one, and one line in [`Protocol`].
+
+pub mod answer;
+mod mavlink;
+mod mpu;
+mod text;
+
+use crate::earth::Day;
+use crate::geometry::Axes;
+use crate::schedule::{Schedule, Ticks};
+use crate::sensor::{Reading, SensorKind, SensorPlan};
+use crate::time::{NANOS, SimTime};
+
+/// The longest packet of any protocol, bytes.
+pub const MAX_PACKET: usize = 232;
+
+/// One packet: when it is due, what it carries, its bytes. Plain data of fixed size, so that handing it over
+/// allocates nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Packet {
+    /// When it is due.
+    pub due: SimTime,
+    /// Bit i is set when it carries a new sample of the sensor of kind i.
+    pub carries: u8,
+    /// Samples of each kind that a newer one replaced before any packet carried them.
+    pub replaced: [u16; 3],
+    len: u16,
+    bytes: [u8; MAX_PACKET],
+}
+
+impl Packet {
+    /// A packet of these bytes, due then; longer ones are cut at [`MAX_PACKET`], which no protocol here reaches.
+    pub fn new(due: SimTime, carries: u8, bytes: &[u8]) -> Packet {
+        let len = bytes.len().min(MAX_PACKET);
+        let mut packet = Packet { due, carries, replaced: [0; 3], len: len as u16, bytes: [0; MAX_PACKET] };
+        packet.bytes[..len].copy_from_slice(&bytes[..len]);
+        packet
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes[..usize::from(self.len)]
+    }
+}
+
+/// What the packets look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Protocol {
+    /// Register images of an MPU-6050 or MPU-9250 in COBS frames.
+    Mpu,
+    /// MAVLink 2 HIL_SENSOR.
+    Mavlink,
+    /// A line of comma-separated values a reading.
+    Csv,
+    /// A JSON object a reading.
+    Jsonl,
+}
+
+impl Protocol {
+    /// Every protocol.
+    pub const ALL: [Protocol; 4] = [Protocol::Mpu, Protocol::Mavlink, Protocol::Csv, Protocol::Jsonl];
+
+    /// As `--to` spells it.
+    pub const fn name(self) -> &'static str {
+        ["mpu", "mavlink", "csv", "jsonl"][self as usize]
+    }
+
+    /// The protocol of that name.
+    pub fn from_name(name: &str) -> Option<Protocol> {
+        Self::ALL.into_iter().find(|protocol| protocol.name() == name)
+    }
+
+    /// One line for `list protocols`.
+    pub const fn about(self) -> &'static str {
+        [
+            "registers of an MPU-6050 or MPU-9250 in COBS frames with a CRC: imu, gyro, accel, mag, config",
+            "MAVLink 2: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second",
+            "t_ns,sensor,x,y,z: one line a reading, in the scene's axes",
+            "the same as one JSON object a line",
+        ][self as usize]
+    }
+}
+
+/// How `mpu` carries gyro and accel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Each in packets of its own.
+    Separate,
+    /// Together in `imu` packets at the faster rate, the slower one held: what a burst read of the chip returns.
+    Burst,
+}
+
+/// How a protocol lays its packets out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// For `mpu`; `None` is burst where the rates are equal, else separate.
+    pub layout: Option<Layout>,
+}
+
+/// What an encoder needs to know of the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'a> {
+    /// The sensors, in order.
+    pub sensors: &'a [SensorPlan],
+    /// The axes the scene is written in, for text.
+    pub axes: Axes,
+    /// The scene's date.
+    pub day: Option<Day>,
+    /// How packets are laid out.
+    pub options: Options,
+}
+
+/// Turns readings into packets, in order of time.
+pub trait Encoder: Send {
+    /// Appends the packets of the readings due at `t`, and whatever the protocol sends besides.
+    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>);
+}
+
+/// The encoder of a protocol.
+pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
+    match protocol {
+        Protocol::Mpu => Box::new(mpu::Mpu::new(setup)),
+        Protocol::Mavlink => Box::new(mavlink::Mavlink::new(setup)),
+        Protocol::Csv => Box::new(text::Text::csv(setup)),
+        Protocol::Jsonl => Box::new(text::Text::jsonl(setup)),
+    }
+}
+
+/// Whether a protocol can carry these sensors.
+///
+/// # Errors
+/// Why not, and what would be right.
+pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> Result<(), String> {
+    let has = |kind| sensors.iter().any(|sensor| sensor.kind == kind);
+    if protocol == Protocol::Mpu && options.layout == Some(Layout::Burst) && !(has(SensorKind::Gyro) && has(SensorKind::Accel)) {
+        return Err("`layout = \"burst\"` needs both [gyro] and [accel]".into());
+    }
+    Ok(())
+}
+
+/// What a protocol cannot carry of these sensors, for `check` and the report: a sensor faster than the packets
+/// that carry it loses samples to newer ones.
+pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
+    let Some(carrier) = sensors.first().filter(|_| protocol == Protocol::Mavlink) else { return Vec::new() };
+    let faster = sensors.iter().filter(|sensor| sensor.rate.as_hz() > carrier.rate.as_hz());
+    faster
+        .map(|sensor| {
+            format!(
+                "mavlink sends HIL_SENSOR at each {} tick ({}): samples of {} ({}) between two of them are replaced by newer ones and counted as dropped",
+                carrier.kind, carrier.rate, sensor.kind, sensor.rate
+            )
+        })
+        .collect()
+}
+
+/// Bytes and packets a second, found by encoding ten seconds of the scene's own ticks with readings of zero.
+pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
+    let seconds = 10;
+    let ticks = setup.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
+    let mut encoder = encoder(protocol, setup);
+    let (mut packets, mut bytes, mut count) = (Vec::new(), 0, 0);
+    let mut readings = Vec::new();
+    for due in Schedule::new(ticks, SimTime(seconds * NANOS)) {
+        readings.clear();
+        let sensors = setup.sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
+        readings.extend(sensors.map(|(i, plan)| Reading::zero(i, plan.kind)));
+        packets.clear();
+        encoder.encode(due.t, &readings, &mut packets);
+        count += packets.len();
+        bytes += packets.iter().map(|packet| packet.bytes().len()).sum::<usize>();
+    }
+    (bytes as f64 / seconds as f64, count as f64 / seconds as f64)
+}
+
+/// Something sent once a second from t = 0, in scene time.
+#[derive(Debug, Default)]
+struct EverySecond {
+    next: SimTime,
+}
+
+impl EverySecond {
+    /// Every whole second up to `t` that has not been given yet.
+    fn due(&mut self, t: SimTime) -> impl Iterator<Item = SimTime> + use<> {
+        let first = self.next;
+        let count = if t >= first { (t - first).0 / NANOS + 1 } else { 0 };
+        self.next = SimTime(first.0 + count * NANOS);
+        (0..count).map(move |i| SimTime(first.0 + i * NANOS))
+    }
+}
+
+/// The newest sample of each sensor, for packets that carry several.
+#[derive(Debug, Default)]
+struct Newest {
+    values: [Option<Reading>; 3],
+    fresh: u8,
+    replaced: [u16; 3],
+}
+
+impl Newest {
+    fn take_in(&mut self, readings: &[Reading]) {
+        for reading in readings {
+            let i = reading.kind as usize;
+            if self.fresh >> i & 1 == 1 {
+                self.replaced[i] = self.replaced[i].saturating_add(1);
+            }
+            self.fresh |= 1 << i;
+            self.values[i] = Some(*reading);
+        }
+    }
+
+    /// A packet of these bytes that carries the fresh samples among `kinds`.
+    fn packet(&mut self, due: SimTime, kinds: u8, bytes: &[u8]) -> Packet {
+        let mut packet = Packet::new(due, self.fresh & kinds, bytes);
+        for i in (0..3).filter(|i| kinds >> i & 1 == 1) {
+            packet.replaced[i] = std::mem::take(&mut self.replaced[i]);
+        }
+        self.fresh &= !kinds;
+        packet
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,100 @@
+//! `mavlink`: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second.
+//!
+//! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
+//! before. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
+
+use super::{Encoder, EverySecond, Newest, Packet, Setup};
+use crate::sensor::{Reading, SensorKind};
+use crate::time::SimTime;
+use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
+
+/// The simulator's own ids: the vehicle's system, a component of its own.
+const SYSTEM: u8 = 1;
+const COMPONENT: u8 = 51;
+
+const MICROTESLA_A_GAUSS: f64 = 100.0;
+const MASKS: [u32; 3] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG];
+
+pub(super) struct Mavlink {
+    seq: u8,
+    seconds: EverySecond,
+    newest: Newest,
+    /// At whose ticks messages go out: the gyro's, or without one the first sensor's.
+    carrier: Option<SensorKind>,
+    unix_us_at_start: Option<u64>,
+}
+
+impl Mavlink {
+    pub(super) fn new(setup: &Setup<'_>) -> Mavlink {
+        Mavlink {
+            seq: 0,
+            seconds: EverySecond::default(),
+            newest: Newest::default(),
+            carrier: setup.sensors.first().map(|sensor| sensor.kind),
+            unix_us_at_start: setup.day.map(|day| day.unix_seconds() as u64 * 1_000_000),
+        }
+    }
+
+    fn bytes<'b>(&mut self, message: &Message, buffer: &'b mut [u8; mavlink::MAX_LEN]) -> &'b [u8] {
+        let header = Header { version: Version::V2, seq: self.seq, system: SYSTEM, component: COMPONENT };
+        self.seq = self.seq.wrapping_add(1);
+        // MAX_LEN holds every message.
+        let len = mavlink::encode(&header, message, buffer).unwrap_or(0);
+        &buffer[..len]
+    }
+
+    fn every_second(&mut self, t: SimTime, out: &mut Vec<Packet>) {
+        let mut buffer = [0; mavlink::MAX_LEN];
+        let us = t.0 as u64 / 1000;
+        let alive = heartbeat::Repr {
+            custom_mode: 0,
+            kind: 0,
+            autopilot: 8,
+            base_mode: 0x20,
+            system_status: 4,
+            mavlink_version: 3,
+        };
+        let clock = system_time::Repr {
+            time_unix_usec: self.unix_us_at_start.map_or(0, |start| start + us),
+            time_boot_ms: (us / 1000) as u32,
+        };
+        for message in [Message::Heartbeat(alive), Message::SystemTime(clock)] {
+            let bytes = self.bytes(&message, &mut buffer);
+            out.push(Packet::new(t, 0, bytes));
+        }
+    }
+
+    fn hil_sensor(&self, t: SimTime) -> Message {
+        let value = |kind: SensorKind, unit: f64| {
+            self.newest.values[kind as usize].map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
+        };
+        let fresh = (0..3).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
+        Message::HilSensor(hil_sensor::Repr {
+            time_usec: t.0 as u64 / 1000,
+            accel: value(SensorKind::Accel, 1.0),
+            gyro: value(SensorKind::Gyro, 1.0),
+            mag: value(SensorKind::Mag, MICROTESLA_A_GAUSS),
+            abs_pressure: 0.0,
+            diff_pressure: 0.0,
+            pressure_alt: 0.0,
+            temperature: 0.0,
+            fields_updated: fresh.fold(0, |mask, bits| mask | bits),
+            id: 0,
+        })
+    }
+}
+
+impl Encoder for Mavlink {
+    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>) {
+        for second in self.seconds.due(t) {
+            self.every_second(second, out);
+        }
+        self.newest.take_in(readings);
+        if readings.iter().any(|reading| Some(reading.kind) == self.carrier) {
+            let message = self.hil_sensor(t);
+            let mut buffer = [0; mavlink::MAX_LEN];
+            let bytes = self.bytes(&message, &mut buffer);
+            out.push(self.newest.packet(t, 0b111, bytes));
+        }
+    }
+}

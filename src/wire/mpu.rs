@@ -1,0 +1,152 @@
+//! `mpu`: register images of an MPU-6050 or MPU-9250, as its driver reads them.
+//!
+//! Readings become counts on the chip's axes. A sensor whose scene gives no such scale is carried at ±2000 °/s,
+//! ±16 g and 0.15 µT with ASA 128, and 25 °C.
+
+use super::{Encoder, EverySecond, Layout, Newest, Packet, Setup};
+use crate::earth::STANDARD_GRAVITY;
+use crate::sensor::{Mount, Reading, SensorKind, SensorPlan, lsb};
+use crate::time::SimTime;
+use ratetable_protocols::mpu::registers::{self, Chip};
+use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
+
+/// No adjustment of the magnetometer's sensitivity.
+const ASA: u8 = 128;
+const TEMPERATURE_C: f64 = 25.0;
+/// 16-bit output, continuous measurement at 100 Hz.
+const CNTL1: u8 = 0x16;
+const IMU: u8 = 1 << SensorKind::Gyro as u8 | 1 << SensorKind::Accel as u8;
+
+pub(super) struct Mpu {
+    seq: u8,
+    seconds: EverySecond,
+    newest: Newest,
+    config: config::Repr,
+    temperature: i16,
+    /// Of gyro, accel and mag: from body to chip, and the unit of one count.
+    scales: [(Mount, f64); 3],
+    /// At whose ticks an `imu` goes out, if gyro and accel travel together.
+    burst: Option<SensorKind>,
+}
+
+impl Mpu {
+    pub(super) fn new(setup: &Setup<'_>) -> Mpu {
+        let plan = |kind| setup.sensors.iter().find(|sensor| sensor.kind == kind);
+        let [gyro, accel, mag] = SensorKind::ALL.map(plan);
+        let is_60x0 = [gyro, accel].into_iter().flatten().any(|sensor| sensor.part == Some("MPU-6050"));
+        let chip = if is_60x0 { Chip::Mpu60x0 } else { Chip::Mpu9250 };
+        let dps = 1f64.to_radians();
+        let (gyro_config, gyro_count) = scale(gyro, |config| dps / registers::gyro_lsb_per_dps(config));
+        let (accel_config, accel_count) = scale(accel, |config| STANDARD_GRAVITY / registers::accel_lsb_per_g(config));
+        let mount = |sensor: Option<&SensorPlan>| sensor.and_then(|sensor| sensor.mount).unwrap_or_else(Mount::flu);
+        let fastest = [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+        Mpu {
+            seq: 0,
+            seconds: EverySecond::default(),
+            newest: Newest::default(),
+            config: config::Repr {
+                who_am_i: chip.who_am_i(),
+                smplrt_div: divider(fastest),
+                config: u8::from(fastest <= 1000.0),
+                gyro_config,
+                accel_config,
+                mag_who: if mag.is_some() { registers::WHO_AK8963 } else { 0 },
+                cntl1: if mag.is_some() { CNTL1 } else { 0 },
+                asa: [ASA; 3],
+            },
+            temperature: chip.temperature_raw(TEMPERATURE_C),
+            scales: [(mount(gyro), gyro_count), (mount(accel), accel_count), (mount(mag), registers::mag_ut_per_lsb(ASA, true))],
+            burst: burst(setup, gyro, accel),
+        }
+    }
+
+    fn push(&mut self, t: SimTime, kinds: u8, packet: &mpu::Packet, out: &mut Vec<Packet>) {
+        let mut buffer = [0; mpu::MAX_LEN];
+        let t_us = (t.0 / 1000) as u32;
+        // MAX_LEN holds every packet.
+        let len = mpu::encode(self.seq, t_us, packet, &mut buffer).unwrap_or(0);
+        self.seq = self.seq.wrapping_add(1);
+        out.push(self.newest.packet(t, kinds, &buffer[..len]));
+    }
+
+    /// The newest reading in counts on the chip's axes.
+    fn counts(&self, kind: SensorKind) -> [i16; 3] {
+        let (mount, count) = self.scales[kind as usize];
+        let Some(reading) = self.newest.values[kind as usize] else { return [0; 3] };
+        let chip = mount.to_chip(reading.value).v.to_array();
+        match kind {
+            SensorKind::Mag => registers::swap_mag_axes(chip).map(|x| registers::mag_raw(x, ASA)),
+            _ => chip.map(|x| registers::nearest(x / count)),
+        }
+    }
+
+    fn imu(&self) -> mpu::Packet {
+        mpu::Packet::Imu(imu::Repr {
+            accel: self.counts(SensorKind::Accel),
+            temperature: self.temperature,
+            gyro: self.counts(SensorKind::Gyro),
+        })
+    }
+
+    fn alone(&self, kind: SensorKind) -> mpu::Packet {
+        match kind {
+            SensorKind::Gyro => mpu::Packet::Gyro(gyro::Repr { gyro: self.counts(kind) }),
+            SensorKind::Accel => mpu::Packet::Accel(accel::Repr { accel: self.counts(kind) }),
+            SensorKind::Mag => {
+                let (_, count) = self.scales[kind as usize];
+                let field = self.newest.values[kind as usize].map_or(0.0, |reading| reading.value.length());
+                // AK8963: the sum of the three components overflows at 4912 µT, the full scale.
+                let overflow = if field > f64::from(registers::MAG_MAX_COUNT) * count { registers::ST2_OVERFLOW } else { 0 };
+                mpu::Packet::Mag(mag::Repr {
+                    st1: registers::ST1_DATA_READY,
+                    field: self.counts(kind),
+                    st2: registers::ST2_16_BIT | overflow,
+                })
+            }
+        }
+    }
+}
+
+impl Encoder for Mpu {
+    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>) {
+        for second in self.seconds.due(t) {
+            let config = mpu::Packet::Config(self.config);
+            self.push(second, 0, &config, out);
+        }
+        self.newest.take_in(readings);
+        if let Some(carrier) = self.burst {
+            if readings.iter().any(|reading| reading.kind == carrier) {
+                self.push(t, IMU, &self.imu(), out);
+            }
+        }
+        for kind in readings.iter().map(|reading| reading.kind) {
+            if self.burst.is_none() || kind == SensorKind::Mag {
+                self.push(t, 1 << kind as u8, &self.alone(kind), out);
+            }
+        }
+    }
+}
+
+/// The full-scale bits whose count is the scene's, else the least scale that holds its range, else the largest.
+fn scale(sensor: Option<&SensorPlan>, count: impl Fn(u8) -> f64) -> (u8, f64) {
+    let scales = [0, 1, 2, 3].map(|bits| (registers::full_scale_bits(bits), count(registers::full_scale_bits(bits))));
+    let wanted = sensor.and_then(|sensor| lsb(&sensor.values, sensor.kind));
+    let exact = scales.iter().find(|(_, count)| wanted.is_some_and(|lsb| (lsb / count - 1.0).abs() < 1e-6));
+    let range = sensor.and_then(|sensor| sensor.values.scalar("range"));
+    let holding = scales.iter().find(|(_, count)| range.is_some_and(|range| range <= 32768.0 * count));
+    *exact.or(holding).unwrap_or(&scales[3])
+}
+
+/// At whose ticks gyro and accel travel together: asked for, or of themselves when they tick alike.
+fn burst(setup: &Setup<'_>, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -> Option<SensorKind> {
+    let (gyro, accel) = (gyro?, accel?);
+    let alike = gyro.rate == accel.rate && gyro.phase == accel.phase;
+    let together = setup.options.layout.map_or(alike, |layout| layout == Layout::Burst);
+    let faster = if accel.rate.as_hz() > gyro.rate.as_hz() { SensorKind::Accel } else { SensorKind::Gyro };
+    together.then_some(faster)
+}
+
+/// SMPLRT_DIV of the rate: 1 kHz / (1 + divider); the 8 kHz of the unfiltered gyro has none.
+fn divider(hz: f64) -> u8 {
+    if hz <= 0.0 || hz > 1000.0 { 0 } else { (libm::round(1000.0 / hz) - 1.0).clamp(0.0, 255.0) as u8 }
+}
