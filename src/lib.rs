@@ -17,6 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod cli;
+pub mod clock;
 pub mod double;
 pub mod earth;
 pub mod geometry;
@@ -27,8 +29,11 @@ pub mod os;
 pub mod player;
 pub mod quantity;
 pub mod random;
+pub mod report;
 pub mod scene;
+pub mod score;
 pub mod schedule;
 pub mod sensor;
+pub mod session;
 pub mod time;
 pub mod wire;

@@ -1,2 +1,5 @@
-//! The command line.
-fn main() {}
+//! Arguments to one call; what went wrong to standard error.
+
+fn main() -> std::process::ExitCode {
+    ratetable::cli::main()
+}

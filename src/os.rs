@@ -50,10 +50,7 @@ impl Readable {
 
     /// Waits until there is something to read, and calls `read` until it answers anything but
     /// `WouldBlock`. Cancelling it loses nothing.
-    pub async fn read<T>(
-        &self,
-        mut read: impl FnMut(BorrowedFd<'_>) -> io::Result<T>,
-    ) -> io::Result<T> {
+    pub async fn read<T>(&self, mut read: impl FnMut(BorrowedFd<'_>) -> io::Result<T>) -> io::Result<T> {
         loop {
             let mut ready = self.0.readable().await?;
             if let Ok(answer) = ready.try_io(|file| read(file.get_ref().as_fd())) {
@@ -127,26 +124,14 @@ fn unsupported(error: io::Error) -> io::Error {
 /// `CAP_SYS_NICE` grants it. Such a thread must not spin without sleeping: the kernel stops
 /// real-time threads that use more than 95 % of a second.
 pub fn set_realtime_priority(priority: i32) -> io::Result<()> {
-    let parameters = libc::sched_param {
-        sched_priority: priority,
-    };
+    let parameters = libc::sched_param { sched_priority: priority };
     let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
     let calling_thread: libc::pid_t = 0;
     // SAFETY: the system call only reads the `sched_param` at the address it is given, which
     // outlives the call. It is called directly because musl's wrapper always fails.
-    let answer = unsafe {
-        libc::syscall(
-            libc::SYS_sched_setscheduler,
-            calling_thread,
-            policy,
-            &raw const parameters,
-        )
-    };
-    if answer == 0 {
-        Ok(())
-    } else {
-        Err(io::Error::last_os_error())
-    }
+    let answer =
+        unsafe { libc::syscall(libc::SYS_sched_setscheduler, calling_thread, policy, &raw const parameters) };
+    if answer == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
 }
 
 /// Keeps the whole process in memory, now and as it grows, so that a page fault never delays a
@@ -182,18 +167,13 @@ fn may_lock_without_limit() -> bool {
 /// Processor time used by the calling thread since it started.
 pub fn thread_cpu_time() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    Duration::new(
-        u64::try_from(time.tv_sec).unwrap_or(0),
-        u32::try_from(time.tv_nsec).unwrap_or(0),
-    )
+    Duration::new(u64::try_from(time.tv_sec).unwrap_or(0), u32::try_from(time.tv_nsec).unwrap_or(0))
 }
 
 /// The processors that the calling thread may run on, in ascending order.
 pub fn affinity() -> io::Result<Vec<usize>> {
     let allowed = sched_getaffinity(None)?;
-    Ok((0..CpuSet::MAX_CPU)
-        .filter(|&cpu| allowed.is_set(cpu))
-        .collect())
+    Ok((0..CpuSet::MAX_CPU).filter(|&cpu| allowed.is_set(cpu)).collect())
 }
 
 /// Binds the calling thread to `processors`; `InvalidInput` where none of them exists.
@@ -210,11 +190,7 @@ pub fn set_affinity(processors: &[usize]) -> io::Result<()> {
 
 /// The error of a call that answers −1 for failure.
 fn checked(answer: libc::c_int) -> io::Result<()> {
-    if answer == -1 {
-        Err(io::Error::last_os_error())
-    } else {
-        Ok(())
-    }
+    if answer == -1 { Err(io::Error::last_os_error()) } else { Ok(()) }
 }
 
 #[cfg(test)]
@@ -262,9 +238,7 @@ mod tests {
 
     #[test]
     fn a_real_time_priority_is_granted_or_refused_in_words() {
-        let answer = std::thread::spawn(|| set_realtime_priority(1))
-            .join()
-            .unwrap();
+        let answer = std::thread::spawn(|| set_realtime_priority(1)).join().unwrap();
         if let Err(error) = answer {
             assert_eq!(error.kind(), io::ErrorKind::PermissionDenied);
         }

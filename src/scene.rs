@@ -18,6 +18,7 @@ mod vehicle;
 pub use document::Place;
 pub use output::{Destination, Output};
 pub use section::Drawn;
+pub use sensors::part_sources;
 pub use suggest::nearest;
 
 use crate::earth::Day;

@@ -118,6 +118,11 @@ pub struct Setup<'a> {
 pub trait Encoder: Send {
     /// Appends the packets of the readings due at `t`, and whatever the protocol sends besides.
     fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>);
+
+    /// Samples of each kind taken in that no packet has carried yet.
+    fn waiting(&self) -> [u64; 3] {
+        [0; 3]
+    }
 }
 
 /// The encoder of a protocol.
@@ -210,6 +215,10 @@ impl Newest {
             self.fresh |= 1 << i;
             self.values[i] = Some(*reading);
         }
+    }
+
+    fn waiting(&self) -> [u64; 3] {
+        [0, 1, 2].map(|i| u64::from(self.fresh >> i & 1) + u64::from(self.replaced[i]))
     }
 
     /// A packet of these bytes that carries the fresh samples among `kinds`.

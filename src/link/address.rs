@@ -140,10 +140,7 @@ pub(super) struct Problem {
 
 impl Problem {
     pub(super) fn new(what: impl Into<String>, right: impl Into<String>) -> Self {
-        Self {
-            what: what.into(),
-            right: right.into(),
-        }
+        Self { what: what.into(), right: right.into() }
     }
 }
 
@@ -170,59 +167,27 @@ mod tests {
     fn every_spelling_is_understood_and_reads_back() {
         let cases = [
             ("pty", Address::Pty { path: None }),
-            (
-                "pty:/tmp/imu",
-                Address::Pty {
-                    path: Some("/tmp/imu".into()),
-                },
-            ),
+            ("pty:/tmp/imu", Address::Pty { path: Some("/tmp/imu".into()) }),
             ("/dev/ttyACM0", serial("/dev/ttyACM0", None)),
             ("/dev/ttyACM0,57600", serial("/dev/ttyACM0", Some(57_600))),
             ("serial:/dev/ttyUSB0", serial("/dev/ttyUSB0", None)),
-            (
-                "serial:/dev/ttyUSB0,1234567",
-                serial("/dev/ttyUSB0", Some(1_234_567)),
-            ),
+            ("serial:/dev/ttyUSB0,1234567", serial("/dev/ttyUSB0", Some(1_234_567))),
             ("serial:here/port,9600", serial("here/port", Some(9600))),
-            (
-                "serial:/dev/serial/by-path/pci-0:1:1.0",
-                serial("/dev/serial/by-path/pci-0:1:1.0", None),
-            ),
+            ("serial:/dev/serial/by-path/pci-0:1:1.0", serial("/dev/serial/by-path/pci-0:1:1.0", None)),
             ("tcpin:4560", Address::TcpIn(place("127.0.0.1", 4560))),
             ("tcpin:0", Address::TcpIn(place("127.0.0.1", 0))),
             ("tcpin:0.0.0.0:4560", Address::TcpIn(place("0.0.0.0", 4560))),
-            (
-                "tcpout:localhost:5760",
-                Address::TcpOut(place("localhost", 5760)),
-            ),
+            ("tcpout:localhost:5760", Address::TcpOut(place("localhost", 5760))),
             ("tcpout:[::1]:5760", Address::TcpOut(place("::1", 5760))),
             ("udpin:14550", Address::UdpIn(place("127.0.0.1", 14_550))),
-            (
-                "udpin:192.168.0.5:14550",
-                Address::UdpIn(place("192.168.0.5", 14_550)),
-            ),
-            (
-                "udpout:192.168.0.255:14550",
-                Address::UdpOut(place("192.168.0.255", 14_550)),
-            ),
-            (
-                "file:/tmp/out.bin",
-                Address::File {
-                    path: "/tmp/out.bin".into(),
-                },
-            ),
-            (
-                "file:out.bin",
-                Address::File {
-                    path: "out.bin".into(),
-                },
-            ),
+            ("udpin:192.168.0.5:14550", Address::UdpIn(place("192.168.0.5", 14_550))),
+            ("udpout:192.168.0.255:14550", Address::UdpOut(place("192.168.0.255", 14_550))),
+            ("file:/tmp/out.bin", Address::File { path: "/tmp/out.bin".into() }),
+            ("file:out.bin", Address::File { path: "out.bin".into() }),
             ("-", Address::Stdout),
         ];
         for (spelled, expected) in cases {
-            let address: Address = spelled
-                .parse()
-                .unwrap_or_else(|error| panic!("{spelled}: {error}"));
+            let address: Address = spelled.parse().unwrap_or_else(|error| panic!("{spelled}: {error}"));
             assert_eq!(address, expected, "{spelled}");
             let again: Address = address.to_string().parse().unwrap();
             assert_eq!(again, expected, "{spelled} as {address}");
@@ -232,20 +197,11 @@ mod tests {
     #[test]
     fn a_bad_spelling_is_told_what_would_be_right() {
         let cases: &[(&str, &[&str])] = &[
-            (
-                "tcp:127.0.0.1:4560",
-                &[
-                    "two readings",
-                    "tcpin:127.0.0.1:4560",
-                    "tcpout:127.0.0.1:4560",
-                ],
-            ),
+            ("tcp:127.0.0.1:4560", &["two readings", "tcpin:127.0.0.1:4560", "tcpout:127.0.0.1:4560"]),
             ("udp:", &["two readings", "udpin:", "udpout:"]),
             ("udp", &["two readings", "udpin:", "udpout:"]),
-            (
-                "udp://10.0.0.1:14550",
-                &["udpin:10.0.0.1:14550", "udpout:10.0.0.1:14550"],
-            ),
+            ("udp:9000", &["udpin:127.0.0.1:9000", "udpout:127.0.0.1:9000"]),
+            ("udp://10.0.0.1:14550", &["udpin:10.0.0.1:14550", "udpout:10.0.0.1:14550"]),
             ("COM3", &["`COM3`", "/dev/ttyACM0", "list ports"]),
             ("COM3,57600", &["/dev/ttyACM0"]),
             ("ttyACM0", &["/dev/ttyACM0"]),
@@ -254,10 +210,7 @@ mod tests {
             ("tcp-listen:4560", &["did you mean tcpin:"]),
             ("udpserver:4560", &["did you mean udpin:"]),
             ("stdout", &["did you mean -?"]),
-            (
-                "carrier-pigeon:1",
-                &["`carrier-pigeon`", "one of pty", "udpout:ADDR:PORT"],
-            ),
+            ("carrier-pigeon:1", &["`carrier-pigeon`", "one of pty", "udpout:ADDR:PORT"]),
             ("", &["empty", "one of pty"]),
             ("pty:", &["path", "pty:/tmp/imu"]),
             ("file:", &["path", "file:"]),
@@ -277,23 +230,14 @@ mod tests {
             ("/dev/ttyACM0,0", &["`0`", "921600"]),
             ("/dev/ttyACM0,", &["baud", "921600"]),
             ("/dev/ttyACM0,99999999999", &["`99999999999`"]),
-            (
-                "serial:/dev/ttyACM0:57600",
-                &["comma", "/dev/ttyACM0,57600"],
-            ),
+            ("serial:/dev/ttyACM0:57600", &["comma", "/dev/ttyACM0,57600"]),
         ];
         for (spelled, expected) in cases {
             let error = spelled.parse::<Address>().unwrap_err();
             let text = error.to_string();
-            assert!(
-                text.contains(&format!("`{spelled}`")),
-                "{text} does not name {spelled}"
-            );
+            assert!(text.contains(&format!("`{spelled}`")), "{text} does not name {spelled}");
             for part in *expected {
-                assert!(
-                    text.contains(part),
-                    "{spelled}: {text:?} does not say {part:?}"
-                );
+                assert!(text.contains(part), "{spelled}: {text:?} does not say {part:?}");
             }
         }
     }
@@ -303,24 +247,15 @@ mod tests {
         let address = serial("/dev/ttyACM0", None);
         assert_eq!(address.baud(), Some(921_600));
         assert_eq!(address.clone().or_baud(57_600).baud(), Some(57_600));
-        assert_eq!(
-            serial("/dev/ttyACM0", Some(9600)).or_baud(57_600).baud(),
-            Some(9600)
-        );
+        assert_eq!(serial("/dev/ttyACM0", Some(9600)).or_baud(57_600).baud(), Some(9600));
         assert_eq!(Address::Stdout.or_baud(57_600).baud(), None);
     }
 
     #[test]
     fn no_two_schemes_share_a_name_and_each_spelling_starts_with_its_own() {
         for (index, scheme) in SCHEMES.iter().enumerate() {
-            assert!(
-                SCHEMES[..index]
-                    .iter()
-                    .all(|other| other.name != scheme.name)
-            );
-            assert!(
-                scheme.spelling.starts_with(scheme.name) || scheme.spelling.starts_with("/dev/")
-            );
+            assert!(SCHEMES[..index].iter().all(|other| other.name != scheme.name));
+            assert!(scheme.spelling.starts_with(scheme.name) || scheme.spelling.starts_with("/dev/"));
             assert!(!scheme.about.is_empty());
         }
     }

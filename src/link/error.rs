@@ -61,9 +61,7 @@ pub enum LinkError {
         path: PathBuf,
     },
     /// The port does not run at this speed.
-    #[error(
-        "link `{link}`: the port does not run at {baud} baud; usual speeds are 57600, 115200, 921600"
-    )]
+    #[error("link `{link}`: the port does not run at {baud} baud; usual speeds are 57600, 115200, 921600")]
     Baud {
         /// The link as spelled.
         link: String,
@@ -71,7 +69,7 @@ pub enum LinkError {
         baud: u32,
     },
     /// A pty cannot be published at this path.
-    #[error("link `{link}`: {} already exists{what}; remove it or choose another path", path.display())]
+    #[error("link `{link}`: {} already exists{what}; choose another path, or remove it", path.display())]
     PathTaken {
         /// The link as spelled.
         link: String,

@@ -37,10 +37,7 @@ impl File {
             doing: format!("write the file {}", path.display()),
             source,
         })?;
-        Ok(Self {
-            disk: Arc::new(disk),
-            path: path.to_owned(),
-        })
+        Ok(Self { disk: Arc::new(disk), path: path.to_owned() })
     }
 
     pub(super) fn name(&self) -> String {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A process that has a device open.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,34 +40,34 @@ impl fmt::Display for Holder {
 /// The processes that have `device` open, as far as this user may see: only root sees everyone's.
 pub(super) fn holders(device: &Path) -> Vec<Holder> {
     let device = fs::canonicalize(device).unwrap_or_else(|_| device.to_owned());
-    let mut found = Vec::new();
-    for process in fs::read_dir("/proc").into_iter().flatten().flatten() {
-        let name = process.file_name();
-        let Some(pid) = name.to_str().and_then(|name| name.parse().ok()) else {
-            continue;
-        };
-        if descriptors(&process.path(), &device).next().is_some() {
-            let name = fs::read_to_string(process.path().join("comm")).unwrap_or_default();
+    processes()
+        .filter(|(_, process)| descriptors(process, &device).next().is_some())
+        .map(|(pid, process)| {
+            let name = fs::read_to_string(process.join("comm")).unwrap_or_default();
             let name = name.trim_end().to_owned();
-            found.push(Holder { pid, name });
-        }
-    }
-    found
+            Holder { pid, name }
+        })
+        .collect()
 }
 
 /// How many descriptors of all processes are `device`.
 pub(super) fn times_open(device: &Path) -> usize {
-    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
-    processes
-        .map(|process| descriptors(&process.path(), device).count())
-        .sum()
+    processes().map(|(_, process)| descriptors(&process, device).count()).sum()
+}
+
+/// Every process: its id and its folder.
+fn processes() -> impl Iterator<Item = (u32, PathBuf)> {
+    let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
+    entries.filter_map(|entry| {
+        let pid = entry.file_name().to_str()?.parse().ok()?;
+        Some((pid, entry.path()))
+    })
 }
 
 /// The descriptors of a process (its folder in `/proc`) that are `device`.
 fn descriptors(process: &Path, device: &Path) -> impl Iterator<Item = fs::DirEntry> {
     let all = fs::read_dir(process.join("fd")).into_iter().flatten();
-    all.flatten()
-        .filter(move |entry| fs::read_link(entry.path()).is_ok_and(|target| target == device))
+    all.flatten().filter(move |entry| fs::read_link(entry.path()).is_ok_and(|target| target == device))
 }
 
 #[cfg(test)]
@@ -88,22 +88,9 @@ mod tests {
 
     #[test]
     fn the_usual_suspects_come_with_a_remedy() {
-        let holder = |name: &str| Holder {
-            pid: 1,
-            name: name.to_owned(),
-        };
-        assert!(
-            holder("QGroundControl")
-                .advice()
-                .unwrap()
-                .contains("AutoConnect")
-        );
-        assert!(
-            holder("ModemManager")
-                .advice()
-                .unwrap()
-                .contains("systemctl")
-        );
+        let holder = |name: &str| Holder { pid: 1, name: name.to_owned() };
+        assert!(holder("QGroundControl").advice().unwrap().contains("AutoConnect"));
+        assert!(holder("ModemManager").advice().unwrap().contains("systemctl"));
         assert_eq!(holder("minicom").advice(), None);
         assert_eq!(holder("minicom").to_string(), "minicom (process 1)");
     }

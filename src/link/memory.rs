@@ -16,16 +16,8 @@ pub fn memory(capacity: usize) -> (Link, Far) {
     let (producer, consumer) = RingBuffer::new(capacity);
     let (answer, answers) = mpsc::unbounded_channel();
     let switches = Arc::new(Switches::default());
-    let near = Memory {
-        producer: Some(producer),
-        switches: Arc::clone(&switches),
-        answers: Some(answers),
-    };
-    let far = Far {
-        consumer,
-        switches,
-        answer: Some(answer),
-    };
+    let near = Memory { producer: Some(producer), switches: Arc::clone(&switches), answers: Some(answers) };
+    let far = Far { consumer, switches, answer: Some(answer) };
     (Link::new(Kind::Memory(near)), far)
 }
 
@@ -97,10 +89,7 @@ impl Memory {
     }
 
     pub(super) fn sender(&mut self) -> Sender {
-        let out = Out {
-            producer: self.producer.take(),
-            switches: Arc::clone(&self.switches),
-        };
+        let out = Out { producer: self.producer.take(), switches: Arc::clone(&self.switches) };
         Sender::new(To::Memory(out), Carry::packet())
     }
 

@@ -98,12 +98,7 @@ impl Link {
     }
 
     fn new(kind: Kind) -> Self {
-        Self {
-            name: each!(&kind, link => link.name()),
-            kind,
-            sender_taken: false,
-            receiver_taken: false,
-        }
+        Self { name: each!(&kind, link => link.name()), kind, sender_taken: false, receiver_taken: false }
     }
 
     /// What one connects to: `/dev/pts/4`, the path a pty is published at, `127.0.0.1:4560` with

@@ -7,15 +7,9 @@ use super::LinkError;
 use super::address::{Address, Place};
 
 /// The addresses of a place, IPv4 first.
-pub(super) async fn resolve(
-    address: &Address,
-    place: &Place,
-) -> Result<Vec<SocketAddr>, LinkError> {
-    let unknown = |source| LinkError::UnknownHost {
-        link: address.to_string(),
-        host: place.host.clone(),
-        source,
-    };
+pub(super) async fn resolve(address: &Address, place: &Place) -> Result<Vec<SocketAddr>, LinkError> {
+    let unknown =
+        |source| LinkError::UnknownHost { link: address.to_string(), host: place.host.clone(), source };
     let found = tokio::net::lookup_host((place.host.as_str(), place.port)).await;
     let mut found: Vec<_> = found.map_err(unknown)?.collect();
     found.sort_by_key(SocketAddr::is_ipv6);
@@ -40,12 +34,7 @@ pub(super) fn cannot_listen(address: &Address, place: &Place, source: io::Error)
         io::ErrorKind::PermissionDenied => "ports below 1024 belong to root; choose a higher one",
         _ => "the system refused",
     };
-    LinkError::Listen {
-        link: address.to_string(),
-        place: place.to_string(),
-        why,
-        source,
-    }
+    LinkError::Listen { link: address.to_string(), place: place.to_string(), why, source }
 }
 
 /// Why a place cannot be reached.
@@ -60,10 +49,5 @@ pub(super) fn cannot_reach(address: &Address, place: &Place, source: io::Error) 
         }
         _ => "the system refused",
     };
-    LinkError::Refused {
-        link: address.to_string(),
-        place: place.to_string(),
-        why,
-        source,
-    }
+    LinkError::Refused { link: address.to_string(), place: place.to_string(), why, source }
 }

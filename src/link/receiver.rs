@@ -40,8 +40,7 @@ const ROOM: usize = 4096;
 pub(super) async fn read_when_ready(stream: &Readable, buffer: &mut Vec<u8>) -> io::Result<usize> {
     buffer.reserve(ROOM);
     loop {
-        let read =
-            stream.read(|fd| rustix::io::read(fd, spare_capacity(buffer)).map_err(tty::lost));
+        let read = stream.read(|fd| rustix::io::read(fd, spare_capacity(buffer)).map_err(tty::lost));
         match read.await {
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) if has_left(error.kind()) => return Ok(0),
@@ -52,8 +51,5 @@ pub(super) async fn read_when_ready(stream: &Readable, buffer: &mut Vec<u8>) -> 
 
 fn has_left(kind: io::ErrorKind) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset, NotConnected};
-    matches!(
-        kind,
-        BrokenPipe | ConnectionAborted | ConnectionReset | NotConnected
-    )
+    matches!(kind, BrokenPipe | ConnectionAborted | ConnectionReset | NotConnected)
 }

@@ -92,16 +92,18 @@ fn unknown(name: &str, rest: Option<&str>) -> Problem {
 
 /// `tcp:` and `udp:` do not say who waits for whom.
 fn two_readings(name: &str, rest: Option<&str>) -> Problem {
-    let rest = rest
-        .filter(|rest| !rest.is_empty())
-        .unwrap_or("127.0.0.1:14550");
+    let place = match rest.unwrap_or_default() {
+        "" => format!("{LOOPBACK}:14550"),
+        port if is_number(port) => format!("{LOOPBACK}:{port}"),
+        place => place.to_owned(),
+    };
     let (inward, outward) = match name {
         "tcp" => ("waits there for a connection", "connects to it"),
         _ => ("waits there for a first datagram", "sends to it"),
     };
     Problem::new(
         format!("`{name}` has two readings"),
-        format!("{name}in:{rest} {inward}, {name}out:{rest} {outward}"),
+        format!("{name}in:{place} {inward}, {name}out:{place} {outward}"),
     )
 }
 
@@ -134,10 +136,7 @@ fn is_number(text: &str) -> bool {
 /// A path that must not be empty.
 pub(super) fn path(rest: &str, example: &str) -> Result<std::path::PathBuf, Problem> {
     if rest.is_empty() {
-        Err(Problem::new(
-            "the path is missing",
-            format!("say where: {example}"),
-        ))
+        Err(Problem::new("the path is missing", format!("say where: {example}")))
     } else {
         Ok(rest.into())
     }
@@ -178,20 +177,12 @@ const LOOPBACK: &str = "127.0.0.1";
 fn place(name: &str, rest: &str) -> Result<Place, Problem> {
     let example = format!("{name}:{LOOPBACK}:14550");
     if rest.is_empty() {
-        return Err(Problem::new(
-            "the address is missing",
-            format!("say {example}"),
-        ));
+        return Err(Problem::new("the address is missing", format!("say {example}")));
     }
     let Some((host, digits)) = rest.rsplit_once(':') else {
-        return Err(Problem::new(
-            format!("`{rest}` has no port"),
-            format!("say {name}:{rest}:14550"),
-        ));
+        return Err(Problem::new(format!("`{rest}` has no port"), format!("say {name}:{rest}:14550")));
     };
-    let bracketed = host
-        .strip_prefix('[')
-        .and_then(|host| host.strip_suffix(']'));
+    let bracketed = host.strip_prefix('[').and_then(|host| host.strip_suffix(']'));
     let plain = bracketed.unwrap_or(host);
     if bracketed.is_none() && (plain.contains(':') || plain.contains('/')) {
         let hint = if plain.contains('/') {
@@ -202,10 +193,7 @@ fn place(name: &str, rest: &str) -> Result<Place, Problem> {
         return Err(Problem::new(format!("`{host}` is no address"), hint));
     }
     if plain.is_empty() {
-        return Err(Problem::new(
-            "the address is missing",
-            format!("say {example}"),
-        ));
+        return Err(Problem::new("the address is missing", format!("say {example}")));
     }
     Ok(Place::new(plain, port(name, digits)?))
 }

@@ -17,7 +17,7 @@ pub const MAX_PACKET: usize = 65_536;
 pub enum Sent {
     /// The link has all of it.
     Done,
-    /// The link takes nothing now, and has none of it.
+    /// The link takes nothing now, or nobody has come to it yet, and it has none of the packet.
     Full,
     /// Nobody is there any more, or the packet can never be sent (`InvalidInput`: too long).
     Gone(io::ErrorKind),
@@ -79,7 +79,7 @@ impl Sender {
                 match self.take(part, gather) {
                     Sent::Done => break,
                     Sent::Full if stop.load(Ordering::Relaxed) => return Sent::Full,
-                    Sent::Full => self.wait(),
+                    Sent::Full => _ = self.wait(),
                     gone @ Sent::Gone(_) => return gone,
                 }
             }
@@ -104,20 +104,19 @@ impl Sender {
     /// otherwise as long as bytes move at least once a second (`TimedOut`).
     pub fn finish(&mut self) -> io::Result<()> {
         let patient = self.carry.gather != Gather::Never;
-        let mut idle = 0;
-        let mut left = self.carry.kept().len();
+        let mut idle_ms = 0;
         loop {
+            let before = self.carry.kept().len();
             match self.flush_carry() {
                 Sent::Done => return Ok(()),
                 Sent::Gone(kind) => return Err(kind.into()),
-                Sent::Full if self.carry.kept().len() < left => idle = 0,
-                Sent::Full => idle += 1,
+                Sent::Full if self.carry.kept().len() < before => idle_ms = 0,
+                Sent::Full if idle_ms > PATIENCE_MS && !patient => {
+                    return Err(io::ErrorKind::TimedOut.into());
+                }
+                Sent::Full => {}
             }
-            if idle * WAIT_MS > 1000 && !patient {
-                return Err(io::ErrorKind::TimedOut.into());
-            }
-            left = self.carry.kept().len();
-            self.wait();
+            idle_ms += self.wait();
         }
     }
 
@@ -130,7 +129,7 @@ impl Sender {
     /// included.
     ///
     /// On a pty: what its reader has not read, of which the kernel shows at most about 4 kB of the
-    /// 19 kB it holds. On a socket: what was not acknowledged.
+    /// up to 20 kB it holds. On a socket: what was not acknowledged.
     pub fn queued(&self) -> Option<usize> {
         let beyond = each!(&self.to, out => out.queued())?;
         Some(beyond + self.kept())
@@ -176,17 +175,18 @@ impl Sender {
         sent
     }
 
-    /// Waits until the link may take something, 50 ms at most.
-    fn wait(&self) {
-        let slice = Timespec {
-            tv_sec: 0,
-            tv_nsec: WAIT_MS * 1_000_000,
+    /// Waits until the link may take something, one slice at most: for about how many ms.
+    ///
+    /// Woken early or for nothing, the caller only asks again.
+    fn wait(&self) -> i64 {
+        let (slice_ms, woken) = match each!(&self.to, out => out.poll_fd()) {
+            Some(fd) => (SLICE_MS, poll_writable(fd, &ms(SLICE_MS))),
+            None => (BLIND_SLICE_MS, poll(&mut [], Some(&ms(BLIND_SLICE_MS)))),
         };
-        // Woken early or for nothing, the caller only asks again.
-        let _ = match each!(&self.to, out => out.poll_fd()) {
-            Some(fd) => poll_writable(fd, &slice),
-            None => poll(&mut [], Some(&slice)),
-        };
+        match woken {
+            Ok(0) => slice_ms,
+            _ => 1,
+        }
     }
 }
 
@@ -197,14 +197,19 @@ impl Drop for Sender {
     }
 }
 
-/// One slice of waiting, in ms.
-const WAIT_MS: i64 = 50;
+/// One slice of waiting, so that a wish to stop is seen.
+const SLICE_MS: i64 = 50;
+/// The same where nothing wakes us: in memory, and with nobody connected.
+const BLIND_SLICE_MS: i64 = 1;
+/// How long `finish` waits for bytes to move.
+const PATIENCE_MS: i64 = 1000;
+
+fn ms(milliseconds: i64) -> Timespec {
+    Timespec { tv_sec: 0, tv_nsec: milliseconds * 1_000_000 }
+}
 
 fn poll_writable(fd: BorrowedFd<'_>, slice: &Timespec) -> rustix::io::Result<usize> {
-    poll(
-        &mut [PollFd::from_borrowed_fd(fd, PollFlags::OUT)],
-        Some(slice),
-    )
+    poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::OUT)], Some(slice))
 }
 
 /// One write: how many bytes were taken, or why none was.
@@ -246,12 +251,7 @@ pub(super) struct Carry {
 
 impl Carry {
     fn new(size: usize, gather: Gather) -> Self {
-        Self {
-            bytes: vec![0; size].into_boxed_slice(),
-            start: 0,
-            end: 0,
-            gather,
-        }
+        Self { bytes: vec![0; size].into_boxed_slice(), start: 0, end: 0, gather }
     }
 
     /// For a stream: room for the rest of a packet.

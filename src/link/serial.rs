@@ -10,9 +10,7 @@ use std::time::Duration;
 
 use rustix::fs::{FlockOperation, Mode, OFlags, flock};
 use rustix::io::Errno;
-use rustix::termios::{
-    ControlModes, QueueSelector, ioctl_tiocexcl, ioctl_tiocnxcl, tcflush, tcgetattr,
-};
+use rustix::termios::{ControlModes, QueueSelector, ioctl_tiocexcl, ioctl_tiocnxcl, tcflush, tcgetattr};
 
 use super::address::{Address, DEFAULT_BAUD, Problem};
 use super::holders::holders;
@@ -35,24 +33,16 @@ pub(super) fn parse(rest: &str) -> Result<Address, Problem> {
     let example = "serial:/dev/ttyUSB0,921600";
     let Some((path, digits)) = rest.rsplit_once(',') else {
         if let Some((path, digits)) = rest.rsplit_once(':')
-            && digits
-                .parse::<u32>()
-                .is_ok_and(|number| number >= *SPEEDS.start())
+            && digits.parse::<u32>().is_ok_and(|number| number >= *SPEEDS.start())
         {
-            return Err(Problem::new(
-                "the speed stands after a comma",
-                format!("say {path},{digits}"),
-            ));
+            return Err(Problem::new("the speed stands after a comma", format!("say {path},{digits}")));
         }
         let path = scheme::path(rest, example)?;
         return Ok(Address::Serial { path, baud: None });
     };
     let path = scheme::path(path, example)?;
     match digits.parse() {
-        Ok(baud) if SPEEDS.contains(&baud) => Ok(Address::Serial {
-            path,
-            baud: Some(baud),
-        }),
+        Ok(baud) if SPEEDS.contains(&baud) => Ok(Address::Serial { path, baud: Some(baud) }),
         _ => Err(Problem::new(
             format!("`{digits}` is no speed in baud"),
             format!("say {},{DEFAULT_BAUD}", path.display()),
@@ -76,12 +66,8 @@ impl Serial {
         let refused = |errno| refusal(address, path, baud, errno);
         let port = take(path).map_err(refused)?;
         // Whatever fails from here on, dropping this gives the port back.
-        let mut serial = Self {
-            port: Arc::new(port),
-            path: path.to_owned(),
-            notices: Vec::new(),
-            input: None,
-        };
+        let mut serial =
+            Self { port: Arc::new(port), path: path.to_owned(), notices: Vec::new(), input: None };
         serial.configure(baud).map_err(refused)?;
         serial.hurry();
         let input = tty::In::new(Arc::clone(&serial.port)).map_err(|source| LinkError::Io {
@@ -97,16 +83,12 @@ impl Serial {
     fn configure(&mut self, baud: u32) -> Result<(), Errno> {
         tty::make_raw(&self.port, |modes| {
             modes.control_modes |= ControlModes::CREAD | ControlModes::CLOCAL | ControlModes::CS8;
-            modes.control_modes -=
-                ControlModes::CSTOPB | ControlModes::PARENB | ControlModes::CRTSCTS;
+            modes.control_modes -= ControlModes::CSTOPB | ControlModes::PARENB | ControlModes::CRTSCTS;
             modes.set_speed(baud)
         })?;
         let actual = tcgetattr(&self.port)?.output_speed();
         if actual.abs_diff(baud) > baud / 50 {
-            self.notices.push(format!(
-                "{} runs at {actual} baud instead of {baud}",
-                self.path.display()
-            ));
+            self.notices.push(format!("{} runs at {actual} baud instead of {baud}", self.path.display()));
         }
         let _ = tcflush(&self.port, QueueSelector::IOFlush);
         Ok(())
@@ -155,10 +137,7 @@ impl Serial {
     }
 
     pub(super) fn sender(&mut self) -> Sender {
-        let out = tty::Out {
-            terminal: Arc::clone(&self.port),
-            far: None,
-        };
+        let out = tty::Out { terminal: Arc::clone(&self.port), far: None };
         Sender::new(To::Tty(out), Carry::packet())
     }
 
@@ -191,10 +170,9 @@ fn take(path: &Path) -> Result<OwnedFd, Errno> {
     let port = rustix::fs::open(path, flags, Mode::empty())?;
     tcgetattr(&port)?;
     // The lock comes first: a port that another holds must not lose that one's own claim.
-    match flock(&port, FlockOperation::NonBlockingLockExclusive) {
-        Err(Errno::WOULDBLOCK) => return Err(Errno::BUSY),
-        // Not every file system has locks.
-        Ok(()) | Err(_) => {}
+    // Other refusals are no reason to stop: not every file system has locks.
+    if flock(&port, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK) {
+        return Err(Errno::BUSY);
     }
     ioctl_tiocexcl(&port)?;
     Ok(port)
@@ -205,28 +183,14 @@ fn refusal(address: &Address, path: &Path, baud: u32, errno: Errno) -> LinkError
     let link = address.to_string();
     let path = path.to_owned();
     match errno {
-        Errno::NOENT | Errno::NXIO | Errno::NODEV | Errno::IO => LinkError::NoSuchPort {
-            link,
-            path,
-            ports: ports().iter().map(ToString::to_string).collect(),
-        },
-        Errno::ACCESS | Errno::PERM => LinkError::Denied {
-            link,
-            remedy: remedy(&path),
-            path,
-        },
-        Errno::BUSY => LinkError::Busy {
-            link,
-            holders: holders(&path),
-            path,
-        },
+        Errno::NOENT | Errno::NXIO | Errno::NODEV | Errno::IO => {
+            LinkError::NoSuchPort { link, path, ports: ports().iter().map(ToString::to_string).collect() }
+        }
+        Errno::ACCESS | Errno::PERM => LinkError::Denied { link, remedy: remedy(&path), path },
+        Errno::BUSY => LinkError::Busy { link, holders: holders(&path), path },
         Errno::NOTTY | Errno::ISDIR | Errno::NOTDIR => LinkError::NotSerial { link, path },
         Errno::INVAL => LinkError::Baud { link, baud },
-        errno => LinkError::Io {
-            link,
-            doing: format!("open {}", path.display()),
-            source: errno.into(),
-        },
+        errno => LinkError::Io { link, doing: format!("open {}", path.display()), source: errno.into() },
     }
 }
 
@@ -259,9 +223,7 @@ fn group_name(groups: &str, id: u32) -> Option<String> {
 /// The file and the value, in ms, of an FTDI adapter's latency timer.
 fn latency_timer(path: &Path) -> Option<(PathBuf, u32)> {
     let device = fs::canonicalize(path).ok()?;
-    let timer = Path::new("/sys/class/tty")
-        .join(device.file_name()?)
-        .join("device/latency_timer");
+    let timer = Path::new("/sys/class/tty").join(device.file_name()?).join("device/latency_timer");
     let milliseconds = fs::read_to_string(&timer).ok()?.trim().parse().ok()?;
     Some((timer, milliseconds))
 }
@@ -314,16 +276,10 @@ mod tests {
         let busy = LinkError::Busy {
             link: "/dev/ttyACM0".into(),
             path: "/dev/ttyACM0".into(),
-            holders: vec![Holder {
-                pid: 42,
-                name: "QGroundControl".into(),
-            }],
+            holders: vec![Holder { pid: 42, name: "QGroundControl".into() }],
         };
         let text = busy.to_string();
-        assert!(
-            text.contains("held by QGroundControl (process 42)"),
-            "{text}"
-        );
+        assert!(text.contains("held by QGroundControl (process 42)"), "{text}");
         assert!(text.contains("AutoConnect"), "{text}");
     }
 

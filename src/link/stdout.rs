@@ -16,20 +16,12 @@ use super::sender::{Carry, Sender, To};
 use super::{LinkError, receiver};
 
 /// Its line in the table of links.
-pub(super) const SCHEME: Scheme = Scheme {
-    name: "-",
-    spelling: "-",
-    about: "standard output",
-    parse,
-};
+pub(super) const SCHEME: Scheme = Scheme { name: "-", spelling: "-", about: "standard output", parse };
 
 fn parse(rest: Option<&str>) -> Result<Address, Problem> {
     match rest {
         None => Ok(Address::Stdout),
-        Some(_) => Err(Problem::new(
-            "standard output takes no path",
-            "say - alone, or file:PATH",
-        )),
+        Some(_) => Err(Problem::new("standard output takes no path", "say - alone, or file:PATH")),
     }
 }
 
@@ -54,10 +46,7 @@ impl Stdout {
     pub(super) fn of(output: impl AsFd) -> io::Result<Self> {
         let file = output.as_fd().try_clone_to_owned()?;
         let kind = FileType::from_raw_mode(fstat(&file)?.st_mode);
-        Ok(Self {
-            file: Some(file.into()),
-            regular: kind == FileType::RegularFile,
-        })
+        Ok(Self { file: Some(file.into()), regular: kind == FileType::RegularFile })
     }
 
     pub(super) fn name(&self) -> String {
@@ -78,13 +67,7 @@ impl Stdout {
             false => Carry::lively_batch(),
         };
         let file = self.file.take();
-        Sender::new(
-            To::Stdout(Out {
-                file,
-                regular: self.regular,
-            }),
-            carry,
-        )
+        Sender::new(To::Stdout(Out { file, regular: self.regular }), carry)
     }
 
     pub(super) fn receiver(&mut self) -> Option<receiver::From> {
@@ -171,10 +154,7 @@ mod tests {
     fn a_pipe_whose_reader_has_left_is_gone() {
         let (mut sender, reader) = pipe();
         drop(reader);
-        assert_eq!(
-            sender.send(b"packet"),
-            Sent::Gone(io::ErrorKind::BrokenPipe)
-        );
+        assert_eq!(sender.send(b"packet"), Sent::Gone(io::ErrorKind::BrokenPipe));
         let stop = AtomicBool::new(false);
         let gone = loop {
             match sender.send_all(b"packet", &stop) {
@@ -183,9 +163,6 @@ mod tests {
             }
         };
         assert_eq!(gone, Sent::Gone(io::ErrorKind::BrokenPipe));
-        assert!(matches!(
-            sender.send(b"packet"),
-            Sent::Gone(io::ErrorKind::BrokenPipe)
-        ));
+        assert!(matches!(sender.send(b"packet"), Sent::Gone(io::ErrorKind::BrokenPipe)));
     }
 }

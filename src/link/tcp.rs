@@ -62,10 +62,7 @@ impl Tcp {
         let refused = |source| cannot_listen(address, place, source);
         let listener = TcpListener::bind(local).await.map_err(refused)?;
         let name = listener.local_addr().map_err(refused)?.to_string();
-        let way = Arc::new(Way {
-            listener: Mutex::new(Some(listener)),
-            stream: OnceCell::new(),
-        });
+        let way = Arc::new(Way { listener: Mutex::new(Some(listener)), stream: OnceCell::new() });
         Ok(Self { name, way })
     }
 
@@ -102,10 +99,7 @@ impl Tcp {
     }
 
     pub(super) fn receiver(&mut self) -> Option<receiver::From> {
-        Some(receiver::From::Tcp(In {
-            way: Arc::clone(&self.way),
-            socket: None,
-        }))
+        Some(receiver::From::Tcp(In { way: Arc::clone(&self.way), socket: None }))
     }
 
     /// Says that nothing more comes, and waits up to a second until the peer has it all.

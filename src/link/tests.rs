@@ -19,14 +19,22 @@ use super::*;
 
 /// Long enough for the slowest machine.
 async fn soon<T>(future: impl Future<Output = T>) -> T {
-    tokio::time::timeout(Duration::from_secs(60), future)
-        .await
-        .expect("nothing happened")
+    tokio::time::timeout(Duration::from_secs(60), future).await.expect("nothing happened")
 }
 
 async fn open(spelled: &str) -> Link {
     let address: Address = spelled.parse().unwrap();
     soon(Link::open(&address)).await.unwrap()
+}
+
+/// Waits until nobody has the link open any more.
+async fn left(link: &Link) {
+    let gone = async {
+        while link.peer_is_present() {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+    };
+    soon(gone).await;
 }
 
 async fn refusal(spelled: &str) -> String {
@@ -46,20 +54,12 @@ struct Far {
 impl Far {
     fn of(file: File) -> Self {
         let read = Box::new(file.try_clone().unwrap());
-        Self {
-            read,
-            write: Box::new(file),
-            _alive: Vec::new(),
-        }
+        Self { read, write: Box::new(file), _alive: Vec::new() }
     }
 
     fn tcp(stream: TcpStream) -> Self {
         let read = Box::new(stream.try_clone().unwrap());
-        Self {
-            read,
-            write: Box::new(stream),
-            _alive: Vec::new(),
-        }
+        Self { read, write: Box::new(stream), _alive: Vec::new() }
     }
 
     fn slave(path: &str) -> Self {
@@ -70,12 +70,7 @@ impl Far {
 /// A pty's slave, opened as a firmware opens its port.
 fn slave(path: impl AsRef<Path>) -> File {
     use std::os::unix::fs::OpenOptionsExt;
-    OpenOptions::new()
-        .read(true)
-        .write(true)
-        .custom_flags(libc::O_NOCTTY)
-        .open(path)
-        .unwrap()
+    OpenOptions::new().read(true).write(true).custom_flags(libc::O_NOCTTY).open(path).unwrap()
 }
 
 /// A pty that is not ours, as a stand-in for a serial port: its master and its slave's path.
@@ -120,9 +115,7 @@ async fn streams() -> Vec<(&'static str, Link, Far)> {
 
 /// Bytes in which a hole or a swap shows.
 fn pattern(count: usize) -> Vec<u8> {
-    (0..count)
-        .map(|i| (i ^ (i >> 8) ^ (i >> 16)) as u8)
-        .collect()
+    (0..count).map(|i| (i ^ (i >> 8) ^ (i >> 16)) as u8).collect()
 }
 
 /// A reader that takes its time: every byte, in small pieces, with rests.
@@ -135,7 +128,7 @@ fn read_slowly(mut far: impl Read + Send + 'static, count: usize) -> thread::Joi
             let end = count.min(done + 4096);
             done += far.read(&mut all[done..end]).unwrap();
             reads += 1;
-            if reads % 16 == 0 {
+            if reads.is_multiple_of(16) {
                 thread::sleep(Duration::from_millis(1));
             }
         }
@@ -216,11 +209,7 @@ async fn a_peer_that_leaves_is_gone_on_a_connection() {
         let mut receiver = link.receiver().unwrap();
         drop(far);
         let mut received = Vec::new();
-        assert_eq!(
-            soon(receiver.recv(&mut received)).await.unwrap(),
-            0,
-            "{kind}"
-        );
+        assert_eq!(soon(receiver.recv(&mut received)).await.unwrap(), 0, "{kind}");
         let stop = AtomicBool::new(false);
         let gone = loop {
             match sender.send_all(b"anybody?", &stop) {
@@ -250,9 +239,7 @@ async fn a_pty_starts_only_after_a_reader_has_opened_it() {
     soon(link.peer()).await.unwrap();
     assert!(link.peer_is_present());
     drop(reader);
-    while link.peer_is_present() {
-        tokio::task::yield_now().await;
-    }
+    left(&link).await;
 }
 
 #[tokio::test]
@@ -299,9 +286,7 @@ async fn a_pty_is_revived_by_a_reader_that_opens_its_path_again() {
         reader.read_exact(&mut received).unwrap();
         assert_eq!(received, [round; 50]);
         drop(reader);
-        while link.peer_is_present() {
-            tokio::task::yield_now().await;
-        }
+        left(&link).await;
     }
     drop(sender);
     soon(link.close()).await;
@@ -314,7 +299,7 @@ async fn a_pty_that_is_closed_waits_for_its_reader() {
     let mut reader = slave(link.name());
     soon(link.peer()).await.unwrap();
     let mut sender = link.sender();
-    let sent = pattern(15_000);
+    let sent = pattern(10_000);
     assert_eq!(sender.send(&sent), Sent::Done);
     assert_eq!(sender.kept(), 0);
     drop(sender);
@@ -381,10 +366,7 @@ fn exchange(sender: &mut Sender, far: &UdpSocket) -> std::net::SocketAddr {
 
 #[tokio::test]
 async fn a_udp_peer_that_does_not_listen_yet_is_no_error() {
-    let place = UdpSocket::bind("127.0.0.1:0")
-        .unwrap()
-        .local_addr()
-        .unwrap();
+    let place = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let mut link = open(&format!("udpout:{place}")).await;
     let mut sender = link.sender();
     for _ in 0..100 {
@@ -539,9 +521,7 @@ async fn a_stopped_sender_leaves_no_packet_cut() {
     let count = taken * 333;
     let reading = thread::spawn(move || {
         let mut received = vec![0; count];
-        reader
-            .read_exact(&mut received)
-            .map(|()| (received, reader))
+        reader.read_exact(&mut received).map(|()| (received, reader))
     });
     sender.finish().unwrap();
     let (received, reader) = reading.join().unwrap().unwrap();
@@ -558,35 +538,25 @@ async fn a_busy_port_names_who_holds_it() {
     assert!(first.notices().is_empty(), "{:?}", first.notices());
     let text = refusal(&spelled).await;
     assert!(text.contains("busy"), "{text}");
-    assert!(
-        text.contains(&format!("this program (process {})", std::process::id())),
-        "{text}"
-    );
+    assert!(text.contains(&format!("this program (process {})", std::process::id())), "{text}");
     drop(first);
     drop(open(&spelled).await);
 
-    // `flock` keeps what it locked open for as long as it runs its command.
+    // `flock` holds what it locked for as long as it runs its command.
     let mut holder = Command::new("flock")
-        .args(["--nonblock", &path, "cat"])
+        .args(["--nonblock", &path, "sh", "-c", "echo locked; exec cat"])
         .stdin(Stdio::piped())
-        .stdout(Stdio::null())
+        .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    let text = loop {
-        let address: Address = spelled.parse().unwrap();
-        match Link::open(&address).await {
-            Err(error) => break error.to_string(),
-            // It has not got there yet.
-            Ok(link) => drop(link),
-        }
-        tokio::time::sleep(Duration::from_millis(10)).await;
-    };
-    holder.kill().unwrap();
+    let mut locked = [0; 7];
+    let said = holder.stdout.as_mut().unwrap().read_exact(&mut locked);
+    said.unwrap();
+    let text = refusal(&spelled).await;
+    let pid = holder.id();
+    drop(holder.stdin.take());
     holder.wait().unwrap();
-    assert!(
-        text.contains(&format!("flock (process {})", holder.id())),
-        "{text}"
-    );
+    assert!(text.contains(&format!("flock (process {pid})")), "{text}");
 }
 
 #[test]

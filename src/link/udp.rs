@@ -115,11 +115,7 @@ impl Way {
     fn new(plain: UdpSocket, peer: OnceCell<SocketAddr>) -> io::Result<Arc<Self>> {
         plain.set_nonblocking(true)?;
         let socket = tokio::net::UdpSocket::from_std(plain.try_clone()?)?;
-        Ok(Arc::new(Self {
-            plain,
-            socket,
-            peer,
-        }))
+        Ok(Arc::new(Self { plain, socket, peer }))
     }
 
     /// Where packets go: who sends first, where nobody was named. Cancelling it loses nothing, and
@@ -127,10 +123,7 @@ impl Way {
     async fn known(&self) -> io::Result<SocketAddr> {
         let first = || async {
             let mut peeked = [0];
-            self.socket
-                .peek_from(&mut peeked)
-                .await
-                .map(|(_, sender)| sender)
+            self.socket.peek_from(&mut peeked).await.map(|(_, sender)| sender)
         };
         self.peer.get_or_try_init(first).await.copied()
     }

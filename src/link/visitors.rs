@@ -39,8 +39,7 @@ impl Visitors {
         let events = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         inotify::add_watch(&events, device, WatchFlags::OPEN | WatchFlags::CLOSE)?;
         let (tell, seen) = watch::channel(Seen::default());
-        let task =
-            tokio::spawn(count(Readable::new(Arc::new(events))?, tell, slave)).abort_handle();
+        let task = tokio::spawn(count(Readable::new(Arc::new(events))?, tell, slave)).abort_handle();
         let device = device.to_owned();
         Ok(Self { device, seen, task })
     }

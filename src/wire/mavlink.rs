@@ -97,4 +97,8 @@ impl Encoder for Mavlink {
             out.push(self.newest.packet(t, 0b111, bytes));
         }
     }
+
+    fn waiting(&self) -> [u64; 3] {
+        self.newest.waiting()
+    }
 }

@@ -125,6 +125,10 @@ impl Encoder for Mpu {
             }
         }
     }
+
+    fn waiting(&self) -> [u64; 3] {
+        self.newest.waiting()
+    }
 }
 
 /// The full-scale bits whose count is the scene's, else the least scale that holds its range, else the largest.

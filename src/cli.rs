@@ -1,0 +1,80 @@
+//! The command line: one file a command.
+
+mod check;
+mod demo;
+mod generate;
+mod list;
+mod options;
+mod progress;
+mod run;
+mod summary;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// A rate table in software: plays a scene and writes its gyro, accelerometer and magnetometer readings, on time, to
+/// a flight controller; or makes a dataset of them with exact truth.
+#[derive(Debug, Parser)]
+#[command(name = "ratetable", version, about, propagate_version = true, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Stream a scene in real time; without a link, demonstrate it on a pty pair with an AHRS on the other end
+    Run(run::Arguments),
+    /// Make a dataset: readings, exact truth, manifest
+    Generate(generate::Arguments),
+    /// Read a scene and show the plan: sensors, noise, bytes a second, warnings
+    Check(check::Arguments),
+    /// Show what there is: scenes, parts, motions, protocols, links, ports
+    List(list::Arguments),
+}
+
+/// What a command came to.
+enum Verdict {
+    /// Done and within limits.
+    Fine,
+    /// Ran, but a limit failed or samples were lost.
+    Failed,
+    /// The exit code of the command that was run.
+    Code(u8),
+}
+
+/// Why a command could not run: the message for the user.
+#[derive(Debug)]
+struct Refusal(String);
+
+impl<E: std::error::Error> From<E> for Refusal {
+    fn from(error: E) -> Refusal {
+        Refusal(error.to_string())
+    }
+}
+
+/// Runs the program: exit code 0 = done and within limits, 1 = a limit failed or samples were lost, 2 = could not run.
+pub fn main() -> ExitCode {
+    let verdict = match Arguments::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Generate(arguments) => generate::generate(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::List(arguments) => list::list(&arguments),
+    };
+    match verdict {
+        Ok(Verdict::Fine) => ExitCode::SUCCESS,
+        Ok(Verdict::Failed) => ExitCode::from(1),
+        Ok(Verdict::Code(code)) => ExitCode::from(code),
+        Err(Refusal(message)) => {
+            eprintln!("{message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Writes to standard output; a reader that has left is no failure of ours.
+fn say(text: &str) {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}

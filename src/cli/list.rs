@@ -1,0 +1,110 @@
+//! `ratetable list`: what there is.
+
+use super::{Refusal, Verdict, say};
+use crate::keys::Takes;
+use crate::report::table;
+use crate::scene::{self, builtin};
+use crate::sensor::parts;
+use crate::wire::Protocol;
+use crate::{link, motion};
+use clap::ValueEnum;
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Which list; all of them without it
+    what: Option<What>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum What {
+    /// Built-in scenes
+    Scenes,
+    /// Sensors known by their datasheet, each value with its source
+    Parts,
+    /// Kinds of motion and their keys
+    Motions,
+    /// What packets look like
+    Protocols,
+    /// Where packets go
+    Links,
+    /// Serial ports of this machine
+    Ports,
+}
+
+pub fn list(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    for what in What::value_variants() {
+        if arguments.what.is_none_or(|asked| asked == *what) {
+            let name = what.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
+            let heading = if arguments.what.is_none() { format!("{name}\n") } else { String::new() };
+            let indent = if arguments.what.is_none() { "  " } else { "" };
+            let body = body(*what)?;
+            let lines: String = body.lines().map(|line| format!("{}\n", format!("{indent}{line}").trim_end())).collect();
+            say(&format!("{heading}{lines}"));
+        }
+    }
+    Ok(Verdict::Fine)
+}
+
+fn body(what: What) -> Result<String, Refusal> {
+    Ok(match what {
+        What::Scenes => {
+            table(&["name", "about"], &builtin::SCENES.map(|(name, text)| vec![name.into(), left(builtin::about(text))]))
+        }
+        What::Parts => parts()?,
+        What::Motions => motions(),
+        What::Protocols => {
+            let row = |protocol: Protocol| vec![protocol.name().into(), left(protocol.about())];
+            table(&["name", "about"], &Protocol::ALL.map(row))
+        }
+        What::Links => {
+            let row = |scheme: &link::Scheme| vec![scheme.spelling.into(), left(scheme.about)];
+            table(&["spelled", "about"], &link::SCHEMES.iter().map(row).collect::<Vec<_>>())
+        }
+        What::Ports => ports(),
+    })
+}
+
+/// The last column of a table of words is not to be pushed to the right.
+fn left(text: &str) -> String {
+    text.to_string()
+}
+
+fn parts() -> Result<String, Refusal> {
+    let mut text = String::new();
+    for part in parts::all() {
+        text += &format!("{}: {}\n", part.names.join(", "), part.about);
+        for value in scene::part_sources(part).map_err(Refusal)? {
+            text += &format!("  {} {} = {}\n      {}\n", value.sensor, value.key, value.value, value.source);
+        }
+    }
+    Ok(text)
+}
+
+fn motions() -> String {
+    let mut text = String::new();
+    for kind in motion::KINDS {
+        text += &format!("{}: {}\n", kind.name, kind.about);
+        for key in kind.keys {
+            let takes = match key.takes {
+                Takes::Scalar(kind) | Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Resolution(kind) => {
+                    format!("{}, such as \"{}\"", kind.name(), kind.example())
+                }
+                Takes::Duration => "time, such as \"2 s\"".into(),
+                Takes::Word(words) => words.join(" or "),
+            };
+            let default = key.default.map_or(String::new(), |default| format!(" (default {default})"));
+            text += &format!("  {}: {}; {takes}{default}\n", key.name, key.about);
+        }
+    }
+    text
+}
+
+fn ports() -> String {
+    let ports = link::ports();
+    if ports.is_empty() {
+        return "no serial port was found; a pty needs none: ratetable run SCENE --to mpu@pty\n".into();
+    }
+    let known = |text: Option<String>| text.unwrap_or_else(|| "-".into());
+    let rows = ports.into_iter().map(|port| vec![port.path.display().to_string(), known(port.product), known(port.manufacturer), port.command]);
+    table(&["port", "product", "manufacturer", "used by"], &rows.collect::<Vec<_>>())
+}

@@ -1,0 +1,56 @@
+//! Values of options that are not plain strings.
+
+use crate::quantity::{self, Sign};
+use crate::report::Limit;
+use crate::scene::{Destination, Output, Plan};
+use crate::session::Speed;
+use crate::time::SimTime;
+use std::time::Duration;
+
+/// `--for`: a time of scene, or `forever`.
+pub fn span(text: &str) -> Result<SimTime, String> {
+    if text == "forever" {
+        return Ok(SimTime::FOREVER);
+    }
+    match quantity::duration_ns(text, Sign::Positive) {
+        Ok(ns) => Ok(SimTime(ns)),
+        Err(error) => Err(format!("{error}; or write `forever`")),
+    }
+}
+
+/// `--wait`: a time, or `0`.
+pub fn wait(text: &str) -> Result<Duration, String> {
+    if text == "0" {
+        return Ok(Duration::ZERO);
+    }
+    let ns = quantity::duration_ns(text, Sign::NonNegative).map_err(|error| error.to_string())?;
+    Ok(Duration::from_nanos(ns.unsigned_abs()))
+}
+
+/// `--speed`: scene seconds a second, or `max`.
+pub fn speed(text: &str) -> Result<Speed, String> {
+    match text.parse::<f64>() {
+        _ if text == "max" => Ok(Speed::Max),
+        Ok(times) if times.is_finite() && times > 0.0 => Ok(Speed::Times(times)),
+        _ => Err("write 1 for real time, another number above 0 for so many scene seconds a second, or max".into()),
+    }
+}
+
+/// `--to`: where packets go.
+pub fn output(text: &str) -> Result<Output, String> {
+    Ok(Output::to(text.parse::<Destination>()?))
+}
+
+/// `--limit`.
+pub fn limit(text: &str) -> Result<Limit, String> {
+    text.parse().map_err(|error: crate::report::LimitError| error.to_string())
+}
+
+/// The limits of the command line and of the scene itself.
+pub fn limits(given: &[Limit], plan: &Plan) -> Result<Vec<Limit>, super::Refusal> {
+    let mut limits = given.to_vec();
+    for (text, place) in &plan.limits {
+        limits.push(text.parse().map_err(|error| super::Refusal(format!("{place}: {error}")))?);
+    }
+    Ok(limits)
+}

@@ -1,0 +1,50 @@
+//! Live progress on standard error, where that is a terminal.
+
+use crate::session::Progress;
+use crate::time::SimTime;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+
+/// A bar that moves with scene time.
+pub struct Bar(ProgressBar);
+
+const MILLIS: i64 = 1_000_000;
+
+impl Bar {
+    /// Up to `end`; invisible where standard error is no terminal.
+    pub fn new(end: SimTime) -> Bar {
+        let visible = std::io::stderr().is_terminal();
+        let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let (length, template) = match end {
+            SimTime::FOREVER => (None, "{spinner} {msg}"),
+            end => (Some((end.0 / MILLIS).max(1) as u64), "{bar:30.cyan/blue} {percent:>3} %  {msg}"),
+        };
+        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        Bar(ProgressBar::with_draw_target(length, target).with_style(style))
+    }
+
+    /// Of a live run.
+    pub fn live(&self, progress: &Progress) {
+        let Progress { t, packets, dropped, error_deg } = progress;
+        let error = error_deg.map_or(String::new(), |degrees| format!(", AHRS off by {degrees:.2}°"));
+        let lost = if *dropped > 0 { format!(", {dropped} samples lost") } else { String::new() };
+        self.0.set_message(format!("{:.1} s, {packets} packets{lost}{error}", t.seconds()));
+        self.0.set_position((t.0 / MILLIS) as u64);
+    }
+
+    /// Of a dataset.
+    pub fn offline(&self, t: SimTime) {
+        self.0.set_message(format!("{:.1} s", t.seconds()));
+        self.0.set_position((t.0 / MILLIS) as u64);
+    }
+
+    /// A line above the bar.
+    pub fn line(&self, text: &str) {
+        self.0.suspend(|| eprintln!("{text}"));
+    }
+
+    /// Takes it off the screen.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,223 @@
+//! `ratetable run`: a scene in real time.
+
+use super::demo::{Firmware, Received};
+use super::progress::Bar;
+use super::{Refusal, Verdict, options, say, summary};
+use crate::link::Address;
+use crate::report::{Host, Interval, Late, Limit, LinkReport, Report, SensorReport, Spread};
+use crate::scene::{Destination, Output, Plan};
+use crate::score::Score;
+use crate::session::{self, Event, Job, Outcome, Speed};
+use crate::time::SimTime;
+use crate::wire::{self, Protocol};
+use serde_json::Value;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The scene of the demonstration.
+const DEMO_SCENE: &str = "table-1";
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A TOML file or the name of a built-in scene [default: table-1, in a demonstration]
+    scene: Option<String>,
+    /// Where to: PROTOCOL@LINK, such as mpu@pty or mavlink@/dev/ttyACM0,921600; may be repeated
+    #[arg(long = "to", value_name = "PROTOCOL@LINK", value_parser = options::output)]
+    to: Vec<Output>,
+    /// How much of the scene, such as 90s; longer than it lasts holds at the end [default: all of it]
+    #[arg(long = "for", value_name = "TIME|forever", value_parser = options::span)]
+    span: Option<SimTime>,
+    /// Scene seconds a second, or max: as fast as the other side reads, nothing dropped
+    #[arg(long, value_name = "1|N|max", default_value = "1", value_parser = options::speed)]
+    speed: Speed,
+    /// How long to wait for somebody on the other side; 0 starts at once
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = options::wait)]
+    wait: Duration,
+    /// Override one key of the scene, such as gyro.rate='8 kHz'
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Fail (exit 1) unless a field of the report keeps to this, such as 'sensors.gyro.late_us.p99<200'
+    #[arg(long = "limit", value_name = "FIELD<VALUE", value_parser = options::limit)]
+    limit: Vec<Limit>,
+    /// Write the dataset played, the estimates that came back and the report into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the output folder if there is one
+    #[arg(long)]
+    force: bool,
+    /// Print the report as JSON on standard output
+    #[arg(long)]
+    json: bool,
+    /// A program to test: started when the links are ready, {} standing for the first one
+    #[arg(last = true, value_name = "COMMAND")]
+    command: Vec<String>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    let plan = Plan::load(arguments.scene.as_deref().unwrap_or(DEMO_SCENE), &arguments.set)?;
+    let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
+    let demonstration = outputs.is_empty();
+    let outputs = if demonstration { vec![demo_output()] } else { outputs };
+    let limits = options::limits(&arguments.limit, &plan)?;
+    let mut report = shape(&plan, &outputs);
+    let as_json = serde_json::to_value(&report)?;
+    limits.iter().try_for_each(|limit| limit.check(&as_json))?;
+    refuse(arguments, &plan, &outputs)?;
+    let plan = Arc::new(plan);
+    let job = Job {
+        plan: plan.clone(),
+        end: arguments.span.unwrap_or(plan.duration),
+        outputs,
+        speed: arguments.speed,
+        wait: arguments.wait,
+        command: arguments.command.clone(),
+        keep_stdout: arguments.json,
+        estimator: if demonstration { "vqf".into() } else { "firmware".into() },
+    };
+    let (outcome, received) = play(job, &plan, demonstration)?;
+    fill(&mut report, &outcome, arguments.speed);
+    if let Some(received) = received {
+        received.add_to(&mut report.sensors, &mut report.links);
+    }
+    judge(&mut report, &limits)?;
+    eprint!("{}", summary::run(&report, &outcome));
+    if let Some(dir) = &arguments.out {
+        super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
+    }
+    if arguments.json {
+        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+    }
+    Ok(match outcome.command {
+        Some(code) if code != 0 => Verdict::Code(u8::try_from(code).unwrap_or(1)),
+        _ if report.ok => Verdict::Fine,
+        _ => Verdict::Failed,
+    })
+}
+
+fn demo_output() -> Output {
+    Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None } })
+}
+
+/// What cannot go together, before anything is opened.
+fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), Refusal> {
+    if arguments.json && outputs.iter().any(|output| output.to.address.is_stdout()) {
+        return Err(Refusal("--json prints the report on standard output, where `-` already sends packets: leave out one of the two".into()));
+    }
+    if arguments.span == Some(SimTime::FOREVER) && arguments.speed == Speed::Max {
+        return Err(Refusal("--for forever at --speed max never ends and never waits: give a time".into()));
+    }
+    for output in outputs {
+        wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
+        wire::warnings(output.to.protocol, &plan.sensors).iter().for_each(|warning| eprintln!("warning: {warning}"));
+    }
+    if let Some(dir) = &arguments.out {
+        super::generate::may_write(dir, arguments.force)?;
+    }
+    Ok(())
+}
+
+fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {
+    let bar = Bar::new(job.end);
+    let mut firmware = None;
+    let outcome = session::run(job, &mut |event| match event {
+        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
+        Event::Ready(name) => {
+            bar.line(&format!("ready: {name}"));
+            if demonstration {
+                let path = name.split_once('@').map_or(name, |(_, path)| path);
+                bar.line("demonstration: a driver and an AHRS (VQF) open that pty as firmware would");
+                firmware = Some(Firmware::start(path, plan));
+            }
+        }
+        Event::Started => {}
+        Event::Progress(progress) => bar.live(&progress),
+    });
+    bar.clear();
+    let received = firmware.map(Firmware::end).transpose();
+    let outcome = outcome?;
+    let received = received.map_err(|error| Refusal(format!("the demonstration's receiving side failed: {error}")))?;
+    Ok((outcome, received))
+}
+
+/// A report with every field that a run can have: limits are checked against it before anything is opened.
+fn shape(plan: &Plan, outputs: &[Output]) -> Report {
+    let sensor = |sensor: &crate::sensor::SensorPlan| SensorReport {
+        name: sensor.kind.name().into(),
+        rate_hz: sensor.rate.as_hz(),
+        sent_hz: None,
+        received_hz: Some(0.0),
+        made: 0,
+        sent: 0,
+        dropped: 0,
+        queued: 0,
+        late_us: Some(Late::default()),
+        interval_us: Some(Interval::default()),
+        write_us: Some(Spread::default()),
+    };
+    let link = |output: &Output| LinkReport {
+        to: output.to.to_string(),
+        name: output.to.to_string(),
+        packets: 0,
+        bytes: 0,
+        dropped: 0,
+        utilisation: None,
+        crc_errors: 0,
+        lost_seq: None,
+        broken: None,
+    };
+    let score = Score {
+        estimator: String::new(),
+        samples: 0,
+        rms_deg: 0.0,
+        max_deg: 0.0,
+        inclination_rms_deg: 0.0,
+        heading_rms_deg: 0.0,
+        delay_ms: None,
+    };
+    Report {
+        version: env!("CARGO_PKG_VERSION").into(),
+        ok: true,
+        failed: Vec::new(),
+        scene: plan.name.clone(),
+        seed: plan.seed,
+        duration_s: 0.0,
+        speed: Value::Null,
+        host: host(false),
+        sensors: plan.sensors.iter().map(sensor).collect(),
+        links: outputs.iter().map(link).collect(),
+        attitude: Some(score),
+    }
+}
+
+fn host(realtime: bool) -> Host {
+    let name = rustix::system::uname();
+    let cpus = std::thread::available_parallelism().map_or(1, |cpus| cpus.get());
+    let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());
+    Host { kernel, cpus, realtime, clock: "CLOCK_MONOTONIC" }
+}
+
+fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
+    report.duration_s = outcome.played.seconds();
+    report.speed = match speed {
+        Speed::Times(times) => times.into(),
+        Speed::Max => "max".into(),
+    };
+    report.host = host(outcome.realtime);
+    report.sensors = outcome.sensors.clone();
+    report.links = outcome.links.clone();
+    report.attitude = outcome.score.clone();
+}
+
+/// Losses and broken limits.
+fn judge(report: &mut Report, limits: &[Limit]) -> Result<(), Refusal> {
+    let lost = report.sensors.iter().filter(|sensor| sensor.dropped > 0);
+    let mut failed: Vec<_> = lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
+    let broken = report.links.iter().filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?)));
+    failed.extend(broken);
+    let value = serde_json::to_value(&*report)?;
+    failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
+    report.ok = failed.is_empty();
+    report.failed = failed;
+    Ok(())
+}

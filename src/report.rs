@@ -1,0 +1,147 @@
+//! Results as data, tables and charts: they read what a run left behind and never reach into one.
+
+pub mod chart;
+mod limit;
+mod text;
+
+pub use limit::{Limit, LimitError};
+pub use text::{number, table};
+
+use crate::score::Score;
+use serde::Serialize;
+
+/// A run's report, one JSON object.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The program's version.
+    pub version: String,
+    /// Whether nothing was lost and every limit held.
+    pub ok: bool,
+    /// What did not hold: `sensors.gyro.late_us.p99 = 312 > 200`.
+    pub failed: Vec<String>,
+    /// The scene's name.
+    pub scene: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Scene time played, s.
+    pub duration_s: f64,
+    /// Scene seconds a second, or `max`.
+    pub speed: serde_json::Value,
+    /// What it ran on.
+    pub host: Host,
+    /// Each sensor, counts summed over links.
+    pub sensors: Vec<SensorReport>,
+    /// Each link.
+    pub links: Vec<LinkReport>,
+    /// How well the other side knew its attitude, where it answered.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<Score>,
+}
+
+/// What a run ran on.
+#[derive(Clone, Debug, Serialize)]
+pub struct Host {
+    /// Name and release.
+    pub kernel: String,
+    /// Processors this process may use.
+    pub cpus: usize,
+    /// Whether the pacing thread had real-time priority and the process was locked in memory.
+    pub realtime: bool,
+    /// Which clock paced it.
+    pub clock: &'static str,
+}
+
+/// One sensor.
+#[derive(Clone, Debug, Serialize)]
+pub struct SensorReport {
+    /// `gyro`, `accel`, `mag`.
+    pub name: String,
+    /// Requested, Hz.
+    pub rate_hz: f64,
+    /// Delivered: (n − 1)/(t_last − t_first), Hz.
+    pub sent_hz: Option<f64>,
+    /// The same at the other end, where known, Hz.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub received_hz: Option<f64>,
+    /// Samples made: `sent + dropped + queued`.
+    pub made: u64,
+    /// Samples whose packet the link took.
+    pub sent: u64,
+    /// Samples that a full or broken link, or a newer sample, cost.
+    pub dropped: u64,
+    /// Samples still on their way when the run was stopped.
+    pub queued: u64,
+    /// The moment just before the write call minus due, µs; absent where nothing is paced.
+    pub late_us: Option<Late>,
+    /// Between two packets of this sensor, µs.
+    pub interval_us: Option<Interval>,
+    /// What the write call itself took, µs.
+    pub write_us: Option<Spread>,
+}
+
+/// Lateness, µs.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Late {
+    /// Least.
+    pub min: f64,
+    /// Median.
+    pub p50: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// 99.9th percentile.
+    pub p99_9: f64,
+    /// Greatest.
+    pub max: f64,
+}
+
+/// Intervals, µs.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Interval {
+    /// Least.
+    pub min: f64,
+    /// Standard deviation.
+    pub std: f64,
+    /// Median.
+    pub p50: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// 99.9th percentile.
+    pub p99_9: f64,
+    /// Greatest.
+    pub max: f64,
+}
+
+/// Durations, µs.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Spread {
+    /// Median.
+    pub p50: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Greatest.
+    pub max: f64,
+}
+
+/// One link.
+#[derive(Clone, Debug, Serialize)]
+pub struct LinkReport {
+    /// `PROTOCOL@LINK` as asked for.
+    pub to: String,
+    /// What one connects to.
+    pub name: String,
+    /// Packets it took.
+    pub packets: u64,
+    /// Their bytes.
+    pub bytes: u64,
+    /// Packets it did not take.
+    pub dropped: u64,
+    /// Bytes sent against what the baud rate carries (8N1), where there is one.
+    pub utilisation: Option<f64>,
+    /// Damaged answers.
+    pub crc_errors: u64,
+    /// Packets the other side missed by their sequence numbers, where it is known.
+    pub lost_seq: Option<u64>,
+    /// Why it takes nothing any more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub broken: Option<String>,
+}

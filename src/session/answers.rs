@@ -1,0 +1,69 @@
+//! What comes back on the links: decoded, set against the truth, kept.
+
+use super::{Shared, Speed};
+use crate::clock::{Clock, WallClock};
+use crate::geometry::Attitude;
+use crate::link::Receiver;
+use crate::scene::Plan;
+use crate::score::{AttitudeError, Scorer};
+use crate::time::SimTime;
+use crate::wire::{Protocol, answer::Listener};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// Estimates of all links together.
+#[derive(Default)]
+pub(super) struct Heard {
+    pub scorer: Scorer,
+    pub estimates: Vec<(SimTime, Attitude)>,
+    pub newest_deg: Option<f64>,
+    /// Bytes that were no answer, by link.
+    pub damaged: Vec<u64>,
+}
+
+/// What a listening task knows.
+pub(super) struct Ear {
+    pub plan: Arc<Plan>,
+    pub shared: Arc<Shared>,
+    pub clock: WallClock,
+    pub speed: Speed,
+    pub heard: Rc<RefCell<Heard>>,
+}
+
+impl Ear {
+    /// Reads one link until the other side leaves; what has no meaning here is read all the same, so that nothing
+    /// stands in the other side's way.
+    pub(super) async fn listen(self, link: usize, protocol: Protocol, mut receiver: Receiver) {
+        let mut listener = Listener::new(protocol);
+        let mut buffer = Vec::with_capacity(4096);
+        loop {
+            buffer.clear();
+            match receiver.recv(&mut buffer).await {
+                Ok(0) | Err(_) => return,
+                Ok(_) => {}
+            }
+            let Some(listener) = &mut listener else { continue };
+            let now = self.clock.now();
+            let mut heard = self.heard.borrow_mut();
+            listener.feed(&buffer, |estimate| {
+                let truth = self.plan.trajectory.at(estimate.t).attitude;
+                let error = AttitudeError::between(truth, estimate.attitude);
+                heard.scorer.add(error, self.delay_ms(now, estimate.t));
+                heard.newest_deg = Some(error.total.to_degrees());
+                heard.estimates.push((estimate.t, estimate.attitude));
+            });
+            heard.damaged[link] = listener.damaged;
+        }
+    }
+
+    /// From when the sample was due to now, in real time.
+    fn delay_ms(&self, now: i64, t: SimTime) -> Option<f64> {
+        let start = self.shared.start_ns.load(Ordering::Relaxed);
+        match self.speed {
+            Speed::Times(times) if start >= 0 => Some((now - start) as f64 / 1e6 - t.0 as f64 / 1e6 / times),
+            _ => None,
+        }
+    }
+}

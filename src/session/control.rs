@@ -1,0 +1,385 @@
+//! The control side of a run: opens links, waits for peers, starts the threads, listens, ends cleanly.
+
+use super::answers::{Ear, Heard};
+use super::pacer::Pacer;
+use super::producer::{self, Made};
+use super::tally::{self, LinkTally};
+use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command};
+use crate::clock::{Clock, Pacing, WallClock};
+use crate::link::Link;
+use crate::os;
+use crate::report::LinkReport;
+use crate::time::SimTime;
+use crate::wire;
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+use tokio::process::Child;
+use tokio::signal::unix::{Signal, SignalKind, signal};
+use tokio::sync::oneshot;
+
+/// Packets made ahead: at most half a second of the fastest sensors, 2 MB.
+const RING: usize = 8192;
+/// From the start of the pacing thread to scene time 0.
+const LEAD: i64 = 5_000_000;
+/// Between two reports of progress.
+const PROGRESS: Duration = Duration::from_millis(100);
+/// Real-time priority of the pacing thread: above ordinary work, below the kernel's own threads.
+const PRIORITY: i32 = 50;
+/// For answers that are still on their way when the last packet is out.
+const LAST_ANSWERS: Duration = Duration::from_millis(200);
+
+/// Runs a job to its end, to Ctrl-C or to the command's end, and tells `on` what happens meanwhile.
+///
+/// # Errors
+/// A link that cannot be opened, nobody on the other side in time, a command that does not start.
+pub fn run(job: Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|source| SessionError::System { doing: "start the control loop", source })?;
+    tokio::task::LocalSet::new().block_on(&runtime, Run::new(job).go(on))
+}
+
+struct Run {
+    job: Job,
+    shared: Arc<Shared>,
+    clock: WallClock,
+    heard: Rc<RefCell<Heard>>,
+    interrupted: bool,
+    /// The command's exit code, once it has ended by itself.
+    ended: Option<i32>,
+}
+
+/// What ended a wait.
+enum Woke<T> {
+    Done(T),
+    Interrupted,
+    CommandEnded,
+}
+
+struct Signals(Signal, Signal);
+
+impl Signals {
+    fn new() -> Result<Signals, SessionError> {
+        let on = |kind| signal(kind).map_err(|source| SessionError::System { doing: "listen for Ctrl-C", source });
+        Ok(Signals(on(SignalKind::interrupt())?, on(SignalKind::terminate())?))
+    }
+
+    async fn recv(&mut self) {
+        tokio::select! { _ = self.0.recv() => {}, _ = self.1.recv() => {} }
+    }
+}
+
+/// The command, if there is one; without one, its end never comes.
+struct Program(Option<Child>);
+
+impl Program {
+    async fn ended(&mut self) -> i32 {
+        match &mut self.0 {
+            Some(child) => child.wait().await.map_or(1, command::code),
+            None => std::future::pending().await,
+        }
+    }
+}
+
+impl Run {
+    fn new(job: Job) -> Run {
+        let heard = Heard { damaged: vec![0; job.outputs.len()], ..Heard::default() };
+        let shared = Shared::default();
+        shared.start_ns.store(-1, Ordering::Relaxed);
+        Run {
+            job,
+            shared: Arc::new(shared),
+            clock: WallClock::start(Pacing::default()),
+            heard: Rc::new(RefCell::new(heard)),
+            interrupted: false,
+            ended: None,
+        }
+    }
+
+    async fn go(mut self, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
+        let mut signals = Signals::new()?;
+        let mut links = Vec::new();
+        for output in &self.job.outputs {
+            links.push(Link::open(&output.to.address).await?);
+        }
+        for (link, output) in links.iter_mut().zip(&self.job.outputs) {
+            link.notices().iter().for_each(|notice| on(Event::Notice(notice.clone())));
+            on(Event::Ready(&format!("{}@{}", output.to.protocol.name(), link.name())));
+        }
+        let names: Vec<String> = links.iter().map(|link| link.name().to_string()).collect();
+        let (ring, consumer) = rtrb::RingBuffer::new(RING);
+        let producer = self.start_producer(ring);
+        let mut program = Program(None);
+        if !self.job.command.is_empty() {
+            program.0 = Some(command::start(&self.job.command, &names[0], self.job.keep_stdout)?);
+        }
+        let here = self.wait_for_peers(&mut links, &mut signals, &mut program).await;
+        if !matches!(here, Ok(true)) {
+            self.shared.stop.store(true, Ordering::Relaxed);
+            drop(consumer);
+            let _ = producer.join();
+            here?;
+            return Ok(self.never_started(names));
+        }
+        on(Event::Started);
+        let senders = links.iter_mut().map(Link::sender).collect();
+        self.listen(&mut links);
+        let pacer = Pacer::new(self.clock, consumer, senders, self.job.speed);
+        let (pacing, mut notices, mut done) = self.start_pacer(pacer)?;
+        self.attend(on, &mut signals, &mut program, &mut notices, &mut done).await;
+        let (mut pacer, realtime) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        let made = self.collect(producer, &mut pacer);
+        self.finish(Ended { pacer, links, program, names, realtime, made }).await
+    }
+
+    fn start_producer(&self, ring: rtrb::Producer<Item>) -> JoinHandle<Made> {
+        let (plan, outputs, end, shared) =
+            (self.job.plan.clone(), self.job.outputs.clone(), self.job.end, self.shared.clone());
+        thread::spawn(move || producer::produce(&plan, &outputs, end, ring, &shared))
+    }
+
+    /// True when somebody is on every link; false when the user or the command ended the wait.
+    async fn wait_for_peers(
+        &mut self,
+        links: &mut [Link],
+        signals: &mut Signals,
+        program: &mut Program,
+    ) -> Result<bool, SessionError> {
+        if self.job.wait.is_zero() {
+            return Ok(true);
+        }
+        let waited = self.job.wait;
+        let deadline = tokio::time::Instant::now() + waited;
+        for link in links {
+            let name = link.name().to_string();
+            let woke = tokio::select! {
+                peer = tokio::time::timeout_at(deadline, link.peer()) => Woke::Done(peer),
+                () = signals.recv() => Woke::Interrupted,
+                code = program.ended() => {
+                    self.ended = Some(code);
+                    Woke::CommandEnded
+                }
+            };
+            match woke {
+                Woke::Done(Ok(peer)) => peer?,
+                Woke::Done(Err(_)) => return Err(SessionError::Nobody { link: name, waited }),
+                Woke::Interrupted => {
+                    self.interrupted = true;
+                    return Ok(false);
+                }
+                Woke::CommandEnded => return Ok(false),
+            }
+        }
+        Ok(true)
+    }
+
+    fn listen(&self, links: &mut [Link]) {
+        for (i, link) in links.iter_mut().enumerate() {
+            let Some(receiver) = link.receiver() else { continue };
+            let ear = Ear {
+                plan: self.job.plan.clone(),
+                shared: self.shared.clone(),
+                clock: self.clock,
+                speed: self.job.speed,
+                heard: self.heard.clone(),
+            };
+            tokio::task::spawn_local(ear.listen(i, self.job.outputs[i].to.protocol, receiver));
+        }
+    }
+
+    /// Starts the pacing thread; the channels bring a notice about what it was not allowed, and its end.
+    fn start_pacer(&self, mut pacer: Pacer<WallClock>) -> Result<Paced, SessionError> {
+        let (shared, paced) = (self.shared.clone(), self.job.speed != Speed::Max);
+        let (tell, notices) = oneshot::channel();
+        let (over, done) = oneshot::channel();
+        let body = move || {
+            let realtime = if paced { Some(privileges()) } else { None };
+            let _ = tell.send(realtime.as_ref().and_then(|granted| granted.as_ref().err().cloned()));
+            pacer.run(pacer.clock.now() + LEAD, &shared);
+            let _ = over.send(());
+            (pacer, realtime.is_some_and(|granted| granted.is_ok()))
+        };
+        let thread = thread::Builder::new().name("pacing".into()).spawn(body);
+        let thread = thread.map_err(|source| SessionError::System { doing: "start the pacing thread", source })?;
+        Ok((thread, notices, done))
+    }
+
+    /// Reports progress until the pacing thread has ended, or the user or the command ends it.
+    async fn attend(
+        &mut self,
+        on: &mut dyn FnMut(Event<'_>),
+        signals: &mut Signals,
+        program: &mut Program,
+        notices: &mut oneshot::Receiver<Option<String>>,
+        done: &mut oneshot::Receiver<()>,
+    ) {
+        if let Ok(Some(notice)) = notices.await {
+            on(Event::Notice(notice));
+        }
+        let mut ticks = tokio::time::interval(PROGRESS);
+        loop {
+            tokio::select! {
+                _ = &mut *done => break,
+                _ = ticks.tick() => on(Event::Progress(self.progress())),
+                () = signals.recv(), if !self.interrupted => {
+                    self.interrupted = true;
+                    self.shared.stop.store(true, Ordering::Relaxed);
+                }
+                code = program.ended(), if self.ended.is_none() => {
+                    self.ended = Some(code);
+                    self.shared.stop.store(true, Ordering::Relaxed);
+                }
+            }
+        }
+        on(Event::Progress(self.progress()));
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            t: SimTime(self.shared.scene_ns.load(Ordering::Relaxed)),
+            packets: self.shared.packets.load(Ordering::Relaxed),
+            dropped: self.shared.dropped.load(Ordering::Relaxed),
+            error_deg: self.heard.borrow().newest_deg,
+        }
+    }
+
+    /// Joins the producer, emptying the ring into the count of what was left while it ends.
+    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<WallClock>) -> (Made, [u64; 3]) {
+        self.shared.stop.store(true, Ordering::Relaxed);
+        let mut left = [0; 3];
+        loop {
+            for (sum, more) in left.iter_mut().zip(pacer.left()) {
+                *sum += more;
+            }
+            if producer.is_finished() {
+                break;
+            }
+            thread::sleep(Duration::from_micros(100));
+        }
+        for (sum, more) in left.iter_mut().zip(pacer.left()) {
+            *sum += more;
+        }
+        (producer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), left)
+    }
+
+    /// Lets the other side take what was sent, closes everything, and adds up.
+    async fn finish(self, ended: Ended) -> Result<Outcome, SessionError> {
+        let Ended { mut pacer, links, program, names, realtime, made: (made, left) } = ended;
+        for (sender, gone) in pacer.senders.iter_mut().zip(&mut pacer.gone) {
+            if let Err(error) = sender.finish() {
+                gone.get_or_insert(error.kind());
+            }
+        }
+        let (tallies, gone) = (pacer.tallies, pacer.gone);
+        drop(pacer.senders);
+        if !self.heard.borrow().estimates.is_empty() {
+            tokio::time::sleep(LAST_ANSWERS).await;
+        }
+        for link in links {
+            link.close().await;
+        }
+        let command = match (self.ended, program.0) {
+            (Some(code), _) => Some(code),
+            (None, Some(child)) => command::end(child).await,
+            (None, None) => None,
+        };
+        let kinds = [0, 1, 2];
+        let sum = |rows: &[[u64; 3]]| kinds.map(|i| rows.iter().map(|row| row[i]).sum::<u64>());
+        let (total, waiting) = (sum(&made.samples), sum(&made.waiting));
+        let queued = kinds.map(|i| left[i] + waiting[i]);
+        let paced = self.job.speed != Speed::Max;
+        let heard = self.heard.borrow();
+        Ok(Outcome {
+            played: self.played(&tallies),
+            interrupted: self.interrupted,
+            realtime,
+            sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
+            links: self.link_reports(&tallies, &gone, names),
+            score: heard.scorer.score(&self.job.estimator),
+            estimates: heard.estimates.clone(),
+            command,
+        })
+    }
+
+    /// The end if all was played, else where the last packet was due.
+    fn played(&self, tallies: &[LinkTally]) -> SimTime {
+        let cut_short = self.interrupted || self.ended.is_some() || tallies.iter().all(|tally| tally.packets == 0);
+        let last = SimTime(self.shared.scene_ns.load(Ordering::Relaxed));
+        if cut_short { last.min(self.job.end) } else { self.job.end }
+    }
+
+    fn link_reports(&self, tallies: &[LinkTally], gone: &[Option<std::io::ErrorKind>], names: Vec<String>) -> Vec<LinkReport> {
+        let damaged = self.heard.borrow().damaged.clone();
+        let per_link = self.job.outputs.iter().zip(tallies).zip(gone).zip(names).zip(damaged);
+        per_link
+            .map(|((((output, tally), gone), name), damaged)| LinkReport {
+                to: output.to.to_string(),
+                name,
+                packets: tally.packets,
+                bytes: tally.bytes,
+                dropped: tally.dropped,
+                utilisation: self.utilisation(output),
+                crc_errors: damaged,
+                lost_seq: None,
+                broken: gone.map(|kind| kind.to_string()),
+            })
+            .collect()
+    }
+
+    /// Bytes a second against what the baud rate carries with one start and one stop bit.
+    fn utilisation(&self, output: &crate::scene::Output) -> Option<f64> {
+        let baud = output.to.address.baud()?;
+        let plan = &self.job.plan;
+        let setup = wire::Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire };
+        let (bytes, _) = wire::load(output.to.protocol, &setup);
+        Some(bytes / (f64::from(baud) / 10.0))
+    }
+
+    fn never_started(&self, names: Vec<String>) -> Outcome {
+        let tallies: Vec<_> = names.iter().map(|_| LinkTally::new()).collect();
+        let gone = vec![None; names.len()];
+        Outcome {
+            played: SimTime::ZERO,
+            interrupted: self.interrupted,
+            realtime: false,
+            sensors: tally::sensors(&self.job.plan, &tallies, [0; 3], [0; 3], false),
+            links: self.link_reports(&tallies, &gone, names),
+            score: None,
+            estimates: Vec::new(),
+            command: self.ended,
+        }
+    }
+}
+
+/// What is left when both threads have ended.
+struct Ended {
+    pacer: Pacer<WallClock>,
+    links: Vec<Link>,
+    program: Program,
+    names: Vec<String>,
+    realtime: bool,
+    /// Samples made, and those left in the ring.
+    made: (Made, [u64; 3]),
+}
+
+type Paced = (JoinHandle<(Pacer<WallClock>, bool)>, oneshot::Receiver<Option<String>>, oneshot::Receiver<()>);
+
+/// Real-time priority and locked memory for the calling thread, or one notice that says what would grant them.
+fn privileges() -> Result<(), String> {
+    let priority = os::set_realtime_priority(PRIORITY);
+    let memory = os::lock_memory();
+    let refused: Vec<_> = [("real-time priority", &priority), ("locked memory", &memory)]
+        .into_iter()
+        .filter_map(|(what, granted)| granted.as_ref().err().map(|error| format!("{what} ({error})")))
+        .collect();
+    if refused.is_empty() {
+        return Ok(());
+    }
+    Err(format!(
+        "not granted: {}; packets may be later on a busy machine. To grant it: `sudo setcap cap_sys_nice,cap_ipc_lock+ep` on this program, or `rtprio 50` and `memlock unlimited` in /etc/security/limits.conf",
+        refused.join(", ")
+    ))
+}
