@@ -1,0 +1,180 @@
+use super::pacer::Pacer;
+use super::producer::{self, Made};
+use super::*;
+use crate::clock::VirtualClock;
+use crate::link::{self, Far, Sender};
+use crate::player::Player;
+use crate::wire::{self, Protocol, Setup};
+use std::convert::Infallible;
+
+/// 1 kHz gyro and accel, 100 Hz mag, for a second.
+const SCENE: &str = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";
+
+fn plan(text: &str) -> Plan {
+    Plan::parse(text, "test", "test", &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn output(text: &str) -> Output {
+    Output::to(text.parse().unwrap_or_else(|error| panic!("{error}")))
+}
+
+/// The ring of a whole scene, made ahead, and what was made.
+fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) {
+    let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+    let made = producer::produce(plan, &[output(to)], plan.duration, ring, shared);
+    (consumer, made)
+}
+
+fn memory(capacity: usize) -> (Sender, Far) {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    let _inside = runtime.enter();
+    let (mut link, far) = link::memory(capacity);
+    (link.sender(), far)
+}
+
+/// The identity that nothing is missed silently, in samples of every kind.
+fn accounts_balance(made: &Made, pacer: &mut Pacer<VirtualClock>) {
+    let left = pacer.left();
+    for kind in 0..3 {
+        let tally = &pacer.tallies[0].sensors[kind];
+        let queued = left[kind] + made.waiting[0][kind];
+        assert_eq!(made.samples[0][kind], tally.sent + tally.dropped + queued, "kind {kind}");
+    }
+}
+
+#[test]
+fn lateness_is_what_the_clock_did_and_everything_is_sent() {
+    let (plan, shared) = (plan(SCENE), Shared::default());
+    let (ring, made) = made(&plan, "mpu@pty", &shared);
+    let (sender, mut far) = memory(1 << 20);
+    // Every fourth wake-up is 30 µs late.
+    let clock = VirtualClock::waking_late([0, 0, 0, 30_000]);
+    let mut pacer = Pacer::new(clock, ring, vec![sender], Speed::Times(1.0));
+    pacer.run(1_000_000, &shared);
+    accounts_balance(&made, &mut pacer);
+    assert_eq!(made.samples[0], [1000, 1000, 100]);
+    let reports = tally::sensors(&plan, &pacer.tallies, made.samples[0], [0; 3], true);
+    let late = reports[0].late_us.unwrap();
+    assert_eq!((late.min, late.p50), (0.0, 0.0));
+    assert!((late.max - 30.0).abs() < 0.03 && (late.p99 - 30.0).abs() < 0.03, "{late:?}");
+    assert!((reports[0].sent_hz.unwrap() - 1000.0).abs() < 0.1);
+    assert!((reports[2].sent_hz.unwrap() - 100.0).abs() < 0.01);
+    assert_eq!(far.take().iter().filter(|&&byte| byte == 0).count(), 1000 + 100 + 1, "imu, mag and config packets");
+}
+
+#[test]
+fn scene_time_goes_as_fast_as_asked() {
+    for times in [0.5, 1.0, 4.0] {
+        let (plan, shared) = (plan(SCENE), Shared::default());
+        let (ring, _) = made(&plan, "mpu@pty", &shared);
+        let (sender, _far) = memory(1 << 20);
+        let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Times(times));
+        pacer.run(0, &shared);
+        let report = &tally::sensors(&plan, &pacer.tallies, [0; 3], [0; 3], true)[0];
+        assert!((report.sent_hz.unwrap() / 1000.0 - times).abs() < 1e-6 * times, "{times}");
+        assert_eq!(report.late_us.unwrap().max, 0.0, "a virtual clock is never late");
+    }
+}
+
+#[test]
+fn a_reader_that_stops_and_resumes_costs_exactly_what_is_counted() {
+    let (plan, shared) = (plan(SCENE), Shared::default());
+    let (ring, made) = made(&plan, "mpu@pty", &shared);
+    let (sender, mut far) = memory(4096);
+    let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Times(1.0));
+    pacer.run(0, &shared);
+    accounts_balance(&made, &mut pacer);
+    let tally = &pacer.tallies[0];
+    assert!(tally.dropped > 0 && tally.packets > 100, "{} dropped of {}", tally.dropped, tally.packets);
+    let there = far.take().len() + pacer.senders[0].kept();
+    assert_eq!(there as u64, tally.bytes, "what was counted as sent is there");
+    assert_eq!(shared.dropped.load(Ordering::Relaxed), tally.sensors.iter().map(|sensor| sensor.dropped).sum::<u64>());
+}
+
+#[test]
+fn a_link_that_goes_away_ends_the_run_and_the_rest_counts_as_queued() {
+    let (plan, shared) = (plan(SCENE), Shared::default());
+    let (ring, made) = made(&plan, "mpu@pty", &shared);
+    let (sender, mut far) = memory(1 << 20);
+    far.leave();
+    let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Times(1.0));
+    pacer.run(0, &shared);
+    assert!(pacer.gone[0].is_some());
+    assert!(pacer.left()[0] > 0, "the rest is left");
+    let (ring, made_again) = self::made(&plan, "mpu@pty", &shared);
+    assert_eq!(made, made_again);
+    pacer.ring = ring;
+    pacer.tallies = vec![tally::LinkTally::new()];
+    pacer.gone = vec![None];
+    pacer.run(0, &shared);
+    accounts_balance(&made, &mut pacer);
+}
+
+#[test]
+fn samples_that_newer_ones_replace_are_counted_as_dropped() {
+    let (plan, shared) = (
+        plan("duration = \"1 s\"\n[gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"7 Hz\"\n"),
+        Shared::default(),
+    );
+    let (ring, made) = made(&plan, "mavlink@pty", &shared);
+    let (sender, _far) = memory(1 << 20);
+    let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Max);
+    pacer.run(0, &shared);
+    let accel = &pacer.tallies[0].sensors[1];
+    // Message k carries the newest of ten; the nine after the last message wait for one that never comes.
+    assert_eq!((accel.sent, accel.dropped, made.waiting[0][1]), (100, 9 * 99, 9));
+    accounts_balance(&made, &mut pacer);
+}
+
+#[test]
+fn the_pacing_thread_allocates_nothing() {
+    for (to, speed) in [("mpu@pty", Speed::Times(1.0)), ("mavlink@pty", Speed::Max), ("csv@pty", Speed::Times(2.0))] {
+        let (plan, shared) = (plan(SCENE), Shared::default());
+        let (ring, _) = made(&plan, to, &shared);
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        let address = format!("file:{}", file.path().display()).parse().unwrap();
+        let mut link = runtime.block_on(link::Link::open(&address)).unwrap();
+        let clock = VirtualClock::waking_late([0, 5_000]);
+        let mut pacer = Pacer::new(clock, ring, vec![link.sender()], speed);
+        let counted = allocation_counter::measure(|| pacer.run(0, &shared));
+        assert!(pacer.tallies[0].packets > 1000);
+        assert_eq!(counted.count_total, 0, "{to}");
+    }
+}
+
+#[test]
+fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
+    for protocol in ["mpu", "mavlink", "csv", "jsonl"] {
+        let plan = Arc::new(plan(SCENE));
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("packets");
+        let job = Job {
+            plan: plan.clone(),
+            outputs: vec![output(&format!("{protocol}@file:{}", path.display()))],
+            end: plan.duration,
+            speed: Speed::Max,
+            wait: Duration::from_secs(1),
+            command: Vec::new(),
+            keep_stdout: false,
+            estimator: String::new(),
+        };
+        let outcome = run(job, &mut |_| {}).unwrap();
+        assert_eq!(outcome.played, plan.duration);
+        for block in [1, 7, 4096] {
+            assert_eq!(std::fs::read(&path).unwrap(), encoded(&plan, protocol, block), "{protocol}, blocks of {block}");
+        }
+    }
+}
+
+fn encoded(plan: &Plan, protocol: &str, block: usize) -> Vec<u8> {
+    let setup = Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: wire::Options::default() };
+    let mut encoder = wire::encoder(Protocol::from_name(protocol).unwrap(), &setup);
+    let mut packets = Vec::new();
+    let played = Player::new(plan, plan.duration, block).play(|moment| {
+        encoder.encode(moment.t, moment.readings, &mut packets);
+        Ok::<(), Infallible>(())
+    });
+    assert!(played.is_ok());
+    packets.iter().flat_map(|packet| packet.bytes().to_vec()).collect()
+}

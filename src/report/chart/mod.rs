@@ -1,1 +1,30 @@
-//! Charts.
+//! Charts: data in, an SVG document out.
+//!
+//! Every chart is a pure function of a plain struct of inputs. The same input gives the same
+//! bytes, and no input panics: values that are not finite are left out, a chart without data says
+//! so, and a value that a logarithmic axis cannot show lies on a floor marked "≤". Colours are
+//! those of Okabe and Ito, which colour-blind readers can tell apart, and colour never carries a
+//! meaning alone. Labels never overlap: pictures grow to hold them.
+//!
+//! | function | shows |
+//! |---|---|
+//! | [`panels`](panels()) | stacked time series with a common time axis |
+//! | [`histogram`](histogram()) | distributions: histograms, the share below or above a value |
+//! | [`loglog`](loglog()) | small multiples of cost against error, with the front of the cheapest |
+//! | [`grid`](grid()) | a table of verdicts |
+//! | [`curves`](curves()) | measured curves with their bands, and theory |
+//!
+//! The drawing is `plotters`' SVG backend, in quarters of a pixel. `kuva`, tried on the same
+//! pictures, has no table of verdicts, lets points and tick labels leave their panel, and brings
+//! no labels at a line's end; `plotters` gives the control that these pictures need, without
+//! reading any system font.
+
+mod axis;
+mod canvas;
+mod panels;
+mod plot;
+mod series;
+#[cfg(test)]
+mod tests;
+
+pub use panels::{Line, LineKind, Panel, Panels, panels};

@@ -1,0 +1,245 @@
+//! Stacked time series with a common time axis.
+
+use super::axis::{Axis, Options};
+use super::canvas::{Canvas, Color, Font, INK, Pen, color, sheet};
+use super::plot::{EndLabel, Frame, Head, LEADING, Legend, MARGIN, SMALL, Sign, longest};
+use super::series::{drawable, range, runs, thin_runs};
+
+const WIDTH: f64 = 800.0;
+const HEIGHT: f64 = 160.0;
+
+/// A picture of panels one above the other.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Panels<'a> {
+    /// What the picture shows.
+    pub title: String,
+    /// A second line; may be empty.
+    pub subtitle: String,
+    /// What the common axis is, with its unit: `time (s)`.
+    pub x_label: String,
+    /// From top to bottom.
+    pub panels: Vec<Panel<'a>>,
+}
+
+/// One panel.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Panel<'a> {
+    /// What the panel shows.
+    pub title: String,
+    /// What the vertical axis is, with its unit: `angular rate (rad/s)`.
+    pub y_label: String,
+    /// Drawn in this order, truth last.
+    pub lines: Vec<Line<'a>>,
+    /// The period of an angle, in the unit of the axis: no line is drawn across a wrap.
+    pub wrap: Option<f64>,
+    /// Whether the vertical axis is logarithmic.
+    pub log_y: bool,
+}
+
+/// One line of a panel.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Line<'a> {
+    /// What the line is.
+    pub name: &'a str,
+    /// Times; as many of these and of `y` are used as there are of both.
+    pub x: &'a [f64],
+    /// Values; one that is not finite leaves a gap.
+    pub y: &'a [f64],
+    /// How the line is drawn.
+    pub kind: LineKind,
+}
+
+/// What a line means, which decides how it is drawn.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LineKind {
+    /// A measured or estimated value, in a colour of its own with its name at its right end.
+    #[default]
+    Value,
+    /// A true value: thin and dark, over the others, named in the legend once.
+    Truth,
+}
+
+/// Draws stacked panels of lines.
+#[must_use]
+pub fn panels(input: &Panels<'_>) -> String {
+    let empty = [Panel::default()];
+    let panels = match input.panels.as_slice() {
+        [] => &empty,
+        some => some,
+    };
+    let plans: Vec<Plan<'_>> = plan(panels);
+    let left = plans
+        .iter()
+        .map(|p| Frame::left_margin(&p.frame.y, &p.panel.y_label))
+        .fold(0.0, f64::max);
+    let right = plans
+        .iter()
+        .map(|p| p.right_margin())
+        .fold(2.0 * MARGIN, f64::max);
+    let head = Head::new(&input.title, &input.subtitle, left + WIDTH);
+    let mut height = head.height();
+    let mut placed = Vec::new();
+    for mut plan in plans {
+        height += plan.head_height();
+        (plan.frame.left, plan.frame.top) = (left, height);
+        height += plan.frame.height + 10.0;
+        placed.push(plan);
+    }
+    let width = (left + WIDTH + right).max(head.width() + 2.0 * MARGIN);
+    sheet(width, height + 40.0, &input.title, |canvas| {
+        head.draw(canvas, MARGIN);
+        let last = placed.len() - 1;
+        for (i, plan) in placed.iter_mut().enumerate() {
+            plan.draw(canvas, i == last);
+            let label = if i == last { &input.x_label } else { "" };
+            plan.frame.draw_labels(canvas, label, &plan.panel.y_label);
+        }
+    })
+}
+
+/// A panel with its place and axes.
+struct Plan<'a> {
+    panel: &'a Panel<'a>,
+    title: Vec<String>,
+    legend: Legend,
+    frame: Frame,
+}
+
+fn plan<'a>(panels: &'a [Panel<'a>]) -> Vec<Plan<'a>> {
+    let times = panels.iter().flat_map(|p| &p.lines).flat_map(|l| l.x);
+    let x = Axis::new(
+        times.copied(),
+        &Options {
+            room: 10,
+            ..Options::default()
+        },
+    );
+    let plan = |panel: &'a Panel<'a>| {
+        let height = HEIGHT.max(EndLabel::height(values(panel).count()));
+        let shown = panel.lines.iter().flat_map(|l| l.y).copied();
+        let options = Options {
+            log: panel.log_y,
+            room: (height / 30.0) as usize,
+            pad: 0.05,
+            wrap: panel.wrap,
+            floor: None,
+        };
+        let legend = Legend::new(truth_entries(panel), WIDTH / 2.0);
+        let font = Font::new(12.5, INK).bold();
+        Plan {
+            panel,
+            title: font.wrap(&panel.title, WIDTH - legend.width - 16.0),
+            legend,
+            frame: Frame {
+                left: 0.0,
+                top: 0.0,
+                width: WIDTH,
+                height,
+                x: x.clone(),
+                y: Axis::new(shown, &options),
+            },
+        }
+    };
+    panels.iter().map(plan).collect()
+}
+
+/// The lines that are not truth, each with its colour.
+fn values<'a>(panel: &'a Panel<'a>) -> impl Iterator<Item = (&'a Line<'a>, Color)> {
+    panel
+        .lines
+        .iter()
+        .filter(|l| l.kind == LineKind::Value)
+        .enumerate()
+        .map(|(i, line)| (line, color(i)))
+}
+
+fn truth(panel: &Panel<'_>) -> Pen {
+    let only = panel.lines.iter().all(|l| l.kind == LineKind::Truth);
+    Pen::new(INK, if only { 1.2 } else { 0.75 })
+}
+
+fn truth_entries(panel: &Panel<'_>) -> Vec<(Sign, String)> {
+    let mut names: Vec<&str> = Vec::new();
+    for line in panel.lines.iter().filter(|l| l.kind == LineKind::Truth) {
+        if !names.contains(&line.name) {
+            names.push(line.name);
+        }
+    }
+    let entry = |name: &str| (Sign::Line(truth(panel)), name.to_owned());
+    names.into_iter().map(entry).collect()
+}
+
+impl Plan<'_> {
+    fn head_height(&self) -> f64 {
+        12.0 + (16.0 * self.title.len() as f64).max(self.legend.height).max(4.0) + 4.0
+    }
+
+    fn right_margin(&self) -> f64 {
+        let names: Vec<&str> = values(self.panel).map(|(l, _)| l.name).collect();
+        22.0 + longest(&Font::new(SMALL, INK), &names) + MARGIN
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>, last: bool) {
+        let (left, top) = (self.frame.left, self.frame.top);
+        let above = top - self.head_height() + 12.0;
+        for (i, line) in self.title.iter().enumerate() {
+            let font = Font::new(12.5, INK).bold();
+            canvas.text(line, (left, above + 7.0 + i as f64 * LEADING), &font);
+        }
+        let x = self.frame.right() - self.legend.width + 16.0;
+        self.legend.draw(canvas, x, above - 2.0);
+        self.frame.draw_axes(canvas, last);
+        let mut labels = Vec::new();
+        // A broad line stays visible under a thin dark one.
+        let width = if self.legend.height > 0.0 { 2.0 } else { 1.1 };
+        for (line, color) in values(self.panel) {
+            self.draw_line(canvas, line, &Pen::new(color, width));
+            if let Some(end) = self.end(line) {
+                labels.push(EndLabel {
+                    text: line.name.to_owned(),
+                    color,
+                    mark: None,
+                    bold: false,
+                    end,
+                });
+            }
+        }
+        for line in &self.panel.lines {
+            if line.kind == LineKind::Truth {
+                self.draw_line(canvas, line, &truth(self.panel));
+            }
+        }
+        EndLabel::draw(&labels, canvas, &self.frame);
+        let drawn = |l: &Line<'_>| l.x.iter().zip(l.y).any(|(x, y)| drawable(*x) && drawable(*y));
+        if !self.panel.lines.iter().any(drawn) {
+            self.frame.draw_no_data(canvas);
+        }
+    }
+
+    fn draw_line(&self, canvas: &mut Canvas<'_>, line: &Line<'_>, pen: &Pen) {
+        let place = |run: Vec<(f64, f64)>| run.into_iter().map(|p| self.frame.at(p)).collect();
+        let placed: Vec<Vec<(f64, f64)>> = runs(line.x, line.y, self.panel.wrap)
+            .into_iter()
+            .map(place)
+            .collect();
+        for run in thin_runs(&placed, self.frame.width) {
+            match run.as_slice() {
+                &[(x, y)] => canvas.line((x - 1.0, y), (x + 1.0, y), &Pen { width: 2.0, ..*pen }),
+                run => canvas.path(run, pen),
+            }
+        }
+    }
+
+    /// Where a line's name belongs: its end, for a noisy line the middle of its last hundredth.
+    /// A line without a value keeps its name, half-way up.
+    fn end(&self, line: &Line<'_>) -> Option<(f64, f64)> {
+        let runs = runs(line.x, line.y, self.panel.wrap);
+        let Some(run) = runs.last() else {
+            let frame = &self.frame;
+            return Some((frame.right(), frame.top + frame.height / 2.0));
+        };
+        let start = run.len() - (run.len() / 100).max(1);
+        let (lo, hi) = range(run[start..].iter().map(|p| p.1))?;
+        Some(self.frame.at((run.last()?.0, lo / 2.0 + hi / 2.0)))
+    }
+}

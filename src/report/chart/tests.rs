@@ -1,0 +1,1 @@
+//! Every chart is read back as XML.
