@@ -649,7 +649,7 @@ proptest! {
         let value = kind.scalar(&format!("{digits}e{power} {unit}")).unwrap();
         let text = text_scalar(value.to_f64(), unit);
         let number: f64 = text.split(' ').next().unwrap().parse().unwrap();
-        prop_assert_eq!(number, format!("{digits}e{power}").parse().unwrap(), "{}", text);
+        prop_assert_eq!(number, format!("{digits}e{power}").parse::<f64>().unwrap(), "{}", text);
     }
 
     #[test]
