@@ -44,6 +44,8 @@ pub struct Options<'a> {
     pub formats: Vec<&'static Format>,
     /// Attitudes that the other side answered, in order of time; none = no `estimate.csv`.
     pub estimates: &'a [(SimTime, Attitude)],
+    /// Further files that the caller made, such as figures: a plain name and the contents.
+    pub extra: &'a [(String, Vec<u8>)],
     /// Called now and then with the scene time that has been written.
     pub progress: &'a mut dyn FnMut(SimTime),
     /// Once true, writing stops with [`DatasetError::Stopped`] and leaves nothing behind.
@@ -51,9 +53,9 @@ pub struct Options<'a> {
 }
 
 impl<'a> Options<'a> {
-    /// CSV, nothing replaced, no estimates.
+    /// CSV, nothing replaced, no estimates, no further files.
     pub fn new(progress: &'a mut dyn FnMut(SimTime)) -> Options<'a> {
-        Options { force: false, formats: vec![FORMATS[0]], estimates: &[], progress, stop: None }
+        Options { force: false, formats: vec![FORMATS[0]], estimates: &[], extra: &[], progress, stop: None }
     }
 }
 
@@ -68,6 +70,14 @@ pub struct Summary {
     pub rows: u64,
     /// Samples beyond their sensor's range, in the plan's order of sensors.
     pub clipped: Vec<u64>,
+}
+
+/// Whether [`write`] would accept the folder, asked before a run that takes its time. Nothing is changed.
+///
+/// # Errors
+/// It holds something and `force` is off, or it is no folder.
+pub fn may_write(dir: &Path, force: bool) -> Result<(), DatasetError> {
+    folder::may_write(dir, force).map(|_| ())
 }
 
 /// Plays `plan` from 0 up to, not including, `end` and writes the folder `dir`.
@@ -99,10 +109,14 @@ fn write_in_blocks(
     }
     let files = book.close(&folder)?;
 
-    let resolved = plan.resolved_until(end);
-    folder.put("scene.toml", resolved.as_bytes())?;
-    folder.put("README.md", readme::text(plan, &files).as_bytes())?;
-    folder.put("manifest.json", manifest::text(plan, end, &files, &clipped, &folder)?.as_bytes())?;
+    let (readme, scene) = (readme::text(plan, &files), plan.resolved_until(end));
+    let mut others = vec![("README.md", readme.as_bytes()), ("scene.toml", scene.as_bytes())];
+    others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
+    for (name, contents) in &others {
+        folder.put(name, contents)?;
+    }
+    let others: Vec<_> = others.into_iter().map(|(name, _)| name).collect();
+    folder.put("manifest.json", manifest::text(plan, end, &files, &others, &clipped, &folder)?.as_bytes())?;
     folder.commit()?;
     let rows = files.iter().map(|file| file.rows).sum();
     Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })
@@ -148,7 +162,11 @@ struct Book<'a> {
 }
 
 impl<'a> Book<'a> {
-    fn open(tables: &'a [Table], folder: &Folder, formats: &[&'static Format]) -> Result<Book<'a>, DatasetError> {
+    fn open(
+        tables: &'a [Table],
+        folder: &Folder,
+        formats: &[&'static Format],
+    ) -> Result<Book<'a>, DatasetError> {
         let writers = formats.iter().map(|format| Ok((*format, (format.open)(tables, folder)?)));
         Ok(Book { tables, rows: vec![0; tables.len()], writers: writers.collect::<Result<_, _>>()? })
     }

@@ -122,7 +122,11 @@ fn check(truth: &Truth, row: &Row) -> Result<(), String> {
 
 fn within(what: &str, row: &Row, error: f64, bound: f64) -> Result<(), String> {
     // Written so that a NaN fails.
-    if error <= bound { Ok(()) } else { Err(format!("{what} at {}: off by {error:e}, bound {bound:e}", row.t)) }
+    if error <= bound {
+        Ok(())
+    } else {
+        Err(format!("{what} at {}: off by {error:e}, bound {bound:e}", row.t))
+    }
 }
 
 fn check_all(scene: &str, truth: &str) -> Result<(), String> {

@@ -70,7 +70,9 @@ mod tests {
     #[test]
     fn whole_numbers_have_no_point_and_no_zero_has_a_sign() {
         let mut digits = ryu::Buffer::new();
-        for (value, text) in [(0.0, "0"), (-0.0, "0"), (-3.0, "-3"), (0.1, "0.1"), (1e-9, "1e-9"), (2.5e20, "2.5e20")] {
+        for (value, text) in
+            [(0.0, "0"), (-0.0, "0"), (-3.0, "-3"), (0.1, "0.1"), (1e-9, "1e-9"), (2.5e20, "2.5e20")]
+        {
             assert_eq!(shortest(value, &mut digits), text);
         }
     }

@@ -9,7 +9,7 @@ use super::error::DatasetError;
 use super::manifest;
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Bytes a file gathers before they go to the system.
@@ -27,15 +27,7 @@ pub struct Folder {
 
 impl Folder {
     pub(super) fn open(target: &Path, force: bool) -> Result<Folder, DatasetError> {
-        let inside = match fs::metadata(target) {
-            Ok(found) if !found.is_dir() => return Err(DatasetError::NotAFolder { path: target.into() }),
-            Ok(_) => true,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => false,
-            Err(error) => return Err(DatasetError::io("look at", target)(error)),
-        };
-        if inside && !force && !is_empty(target)? {
-            return Err(DatasetError::Exists { path: target.into() });
-        }
+        let inside = may_write(target, force)?;
         let workshop = workshop(target, inside);
         fs::create_dir_all(&workshop).map_err(DatasetError::io("create", target))?;
         Ok(Folder { target: target.into(), workshop, inside })
@@ -116,8 +108,19 @@ impl Sink {
     }
 
     #[cold]
-    fn failed(&self, source: std::io::Error) -> DatasetError {
+    fn failed(&self, source: io::Error) -> DatasetError {
         DatasetError::io("write", &self.path)(source)
+    }
+}
+
+/// Whether the folder is there already, unless it is one that may not be written.
+pub(super) fn may_write(target: &Path, force: bool) -> Result<bool, DatasetError> {
+    match fs::metadata(target) {
+        Ok(found) if !found.is_dir() => Err(DatasetError::NotAFolder { path: target.into() }),
+        Ok(_) if !force && !is_empty(target)? => Err(DatasetError::Exists { path: target.into() }),
+        Ok(_) => Ok(true),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(DatasetError::io("look at", target)(error)),
     }
 }
 

@@ -5,7 +5,7 @@ use super::folder::Folder;
 use super::readme;
 use super::table::Column;
 use crate::scene::{Drawn, Plan};
-use crate::sensor::Sampling;
+use crate::sensor::{Sampling, SensorPlan};
 use crate::time::SimTime;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -57,7 +57,7 @@ struct Manifest<'a> {
     drawn: &'a [Drawn],
     faults: [String; 0],
     files: &'a [FileEntry],
-    texts: Vec<TextEntry>,
+    other_files: Vec<OtherEntry<'a>>,
 }
 
 #[derive(Serialize)]
@@ -75,8 +75,8 @@ struct SensorEntry {
 }
 
 #[derive(Serialize)]
-struct TextEntry {
-    name: &'static str,
+struct OtherEntry<'a> {
+    name: &'a str,
     sha256: String,
 }
 
@@ -85,11 +85,12 @@ pub(super) fn text(
     plan: &Plan,
     end: SimTime,
     files: &[FileEntry],
+    others: &[&str],
     clipped: &[u64],
     folder: &Folder,
 ) -> Result<String, DatasetError> {
-    let text_entry = |name| Ok(TextEntry { name, sha256: checksum(&folder.path(name))? });
-    let part = |sensor: &crate::sensor::SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
+    let other = |&name| Ok(OtherEntry { name, sha256: checksum(&folder.path(name))? });
+    let part = |sensor: &SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
     let manifest = Manifest {
         program: env!("CARGO_PKG_NAME"),
         version: env!("CARGO_PKG_VERSION"),
@@ -104,14 +105,14 @@ pub(super) fn text(
         drawn: &plan.drawn,
         faults: [],
         files,
-        texts: ["README.md", "scene.toml"].into_iter().map(text_entry).collect::<Result<_, DatasetError>>()?,
+        other_files: others.iter().map(other).collect::<Result<_, DatasetError>>()?,
     };
     let text = serde_json::to_string_pretty(&manifest).map_err(io::Error::other);
     Ok(text.map_err(DatasetError::io("write", Path::new("manifest.json")))? + "\n")
 }
 
 fn sensors(plan: &Plan, end: SimTime, clipped: &[u64]) -> Vec<SensorEntry> {
-    let entry = |(sensor, &clipped): (&crate::sensor::SensorPlan, &u64)| SensorEntry {
+    let entry = |(sensor, &clipped): (&SensorPlan, &u64)| SensorEntry {
         name: sensor.kind.name(),
         unit: sensor.kind.unit(),
         rate: sensor.rate.to_string(),
@@ -156,7 +157,7 @@ pub(super) fn checksum(path: &Path) -> Result<String, DatasetError> {
 /// The files that the manifest of an existing dataset lists: plain names in its own folder; none without one.
 pub(super) fn files_of(folder: &Path) -> Vec<String> {
     let json = read_json(folder).unwrap_or_default();
-    let listed = ["files", "texts"].into_iter().filter_map(|key| json.get(key)?.as_array());
+    let listed = ["files", "other_files"].into_iter().filter_map(|key| json.get(key)?.as_array());
     let names = listed.flatten().filter_map(|file| file.get("name")?.as_str());
     names.filter(|name| Path::new(name).file_name() == Some(name.as_ref())).map(String::from).collect()
 }

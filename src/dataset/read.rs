@@ -85,12 +85,16 @@ struct Columns<const N: usize> {
 impl<const N: usize> Columns<N> {
     fn open(file: &Path, names: [&str; N]) -> Result<Columns<N>, DatasetError> {
         let opened = File::open(file).map_err(DatasetError::io("read", file))?;
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).buffer_capacity(1 << 18).from_reader(opened);
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).buffer_capacity(1 << 18).from_reader(opened);
         let header = reader.headers().map_err(|error| unreadable(file, &error))?.clone();
         let find = |name: &str| {
             header.iter().position(|column| column == name).ok_or_else(|| DatasetError::Content {
                 place: format!("{}:1", file.display()),
-                problem: format!("has no column `{name}`; its columns are {}", Vec::from_iter(&header).join(", ")),
+                problem: format!(
+                    "has no column `{name}`; its columns are {}",
+                    Vec::from_iter(&header).join(", ")
+                ),
             })
         };
         let time = find("t_ns")?;
@@ -107,11 +111,14 @@ impl<const N: usize> Columns<N> {
             return Ok(None);
         }
         let text = &self.record[self.time];
-        let t = text.parse().map(SimTime).map_err(|_| {
-            self.wrong("t_ns", format!("`{text}` is no whole number of nanoseconds"))
-        })?;
+        let t = text
+            .parse()
+            .map(SimTime)
+            .map_err(|_| self.wrong("t_ns", format!("`{text}` is no whole number of nanoseconds")))?;
         if let Some(last) = self.last.filter(|&last| t <= last) {
-            return Err(self.wrong("t_ns", format!("{} is not after {}, the time of the row before", t.0, last.0)));
+            return Err(
+                self.wrong("t_ns", format!("{} is not after {}, the time of the row before", t.0, last.0))
+            );
         }
         self.last = Some(t);
         let mut values = [0.0; N];

@@ -96,7 +96,8 @@ fn field_section(plan: &Plan) -> String {
     let field = plan.trajectory.field();
     let nav = triple(plan.axes.nav_out(field));
     let horizontal = libm::hypot(field.v.x, field.v.y);
-    let mut text = format!("## Magnetic field\n\nIn nav axes `{nav}` uT, the same everywhere in this dataset. ");
+    let mut text =
+        format!("## Magnetic field\n\nIn nav axes `{nav}` uT, the same everywhere in this dataset. ");
     if horizontal > 0.0 {
         let declination = libm::atan2(field.v.y, field.v.x).to_degrees();
         let dip = libm::atan2(field.v.z, horizontal).to_degrees();

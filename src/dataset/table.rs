@@ -58,7 +58,8 @@ fn column((name, unit): (&str, &'static str)) -> Column {
 }
 
 fn triple(prefix: &str, kind: SensorKind) -> [Column; 3] {
-    ["x", "y", "z"].map(|axis| Column { name: format!("{prefix}{axis}_{}", kind.column_unit()), unit: kind.unit() })
+    ["x", "y", "z"]
+        .map(|axis| Column { name: format!("{prefix}{axis}_{}", kind.column_unit()), unit: kind.unit() })
 }
 
 /// A row of the truth after `t_ns`.
@@ -66,7 +67,8 @@ pub(super) fn truth(axes: Axes, truth: &Truth) -> [f64; 16] {
     let q = axes.attitude_out(truth.attitude);
     let Euler { roll, pitch, yaw } = Euler::from_quat(q);
     let vector = |v| axes.body_out(v).to_array();
-    let ([wx, wy, wz], [fx, fy, fz], [mx, my, mz]) = (vector(truth.rate), vector(truth.force), vector(truth.field));
+    let ([wx, wy, wz], [fx, fy, fz], [mx, my, mz]) =
+        (vector(truth.rate), vector(truth.force), vector(truth.field));
     [q.w, q.x, q.y, q.z, roll, pitch, yaw, wx, wy, wz, fx, fy, fz, mx, my, mz]
 }
 

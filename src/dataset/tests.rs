@@ -80,16 +80,34 @@ fn files_and_columns_are_exactly_as_specified() {
     let (_home, out) = place();
     let plan = plan("table-1", &[]);
     let estimates = [(SimTime(5), Attitude::IDENTITY)];
-    write(&plan, SimTime(NANOS / 10), &out, Options { estimates: &estimates, ..Options::new(&mut |_| {}) }).unwrap();
+    write(&plan, SimTime(NANOS / 10), &out, Options { estimates: &estimates, ..Options::new(&mut |_| {}) })
+        .unwrap();
     let files = contents(&out);
     let names: Vec<_> = files.keys().map(String::as_str).collect();
-    let expected =
-        ["README.md", "accel.csv", "estimate.csv", "gyro.csv", "mag.csv", "manifest.json", "scene.toml", "truth.csv"];
+    let expected = [
+        "README.md",
+        "accel.csv",
+        "estimate.csv",
+        "gyro.csv",
+        "mag.csv",
+        "manifest.json",
+        "scene.toml",
+        "truth.csv",
+    ];
     assert_eq!(names, expected);
     for (name, header) in [
-        ("truth.csv", "t_ns,qw,qx,qy,qz,roll_rad,pitch_rad,yaw_rad,wx_rad_s,wy_rad_s,wz_rad_s,fx_m_s2,fy_m_s2,fz_m_s2,mx_ut,my_ut,mz_ut"),
-        ("gyro.csv", "t_ns,x_rad_s,y_rad_s,z_rad_s,true_x_rad_s,true_y_rad_s,true_z_rad_s,bias_x_rad_s,bias_y_rad_s,bias_z_rad_s"),
-        ("accel.csv", "t_ns,x_m_s2,y_m_s2,z_m_s2,true_x_m_s2,true_y_m_s2,true_z_m_s2,bias_x_m_s2,bias_y_m_s2,bias_z_m_s2"),
+        (
+            "truth.csv",
+            "t_ns,qw,qx,qy,qz,roll_rad,pitch_rad,yaw_rad,wx_rad_s,wy_rad_s,wz_rad_s,fx_m_s2,fy_m_s2,fz_m_s2,mx_ut,my_ut,mz_ut",
+        ),
+        (
+            "gyro.csv",
+            "t_ns,x_rad_s,y_rad_s,z_rad_s,true_x_rad_s,true_y_rad_s,true_z_rad_s,bias_x_rad_s,bias_y_rad_s,bias_z_rad_s",
+        ),
+        (
+            "accel.csv",
+            "t_ns,x_m_s2,y_m_s2,z_m_s2,true_x_m_s2,true_y_m_s2,true_z_m_s2,bias_x_m_s2,bias_y_m_s2,bias_z_m_s2",
+        ),
         ("mag.csv", "t_ns,x_ut,y_ut,z_ut,true_x_ut,true_y_ut,true_z_ut,bias_x_ut,bias_y_ut,bias_z_ut"),
         ("estimate.csv", "t_ns,qw,qx,qy,qz"),
     ] {
@@ -100,7 +118,10 @@ fn files_and_columns_are_exactly_as_specified() {
     }
     let [w, x, y, z] = rows(&files, "estimate.csv")[0][1..] else { panic!() };
     let north: Vec<f64> = [w, x, y, z].iter().map(|text| text.parse().unwrap()).collect();
-    assert!((north[0].abs() - 0.5f64.sqrt()).abs() < 1e-15 && north[0] == north[3], "north is yawed 90° in ENU");
+    assert!(
+        (north[0].abs() - 0.5f64.sqrt()).abs() < 1e-15 && north[0] == north[3],
+        "north is yawed 90° in ENU"
+    );
 }
 
 #[test]
@@ -110,7 +131,12 @@ fn every_tick_has_its_row_and_the_truth_has_their_union() {
     let mut union = std::collections::BTreeSet::new();
     for sensor in &plan.sensors {
         let rows = rows(&files, &format!("{}.csv", sensor.kind));
-        assert_eq!(rows.len() as u64, sensor.rate.ticks_before(sensor.phase, plan.duration), "{}", sensor.kind);
+        assert_eq!(
+            rows.len() as u64,
+            sensor.rate.ticks_before(sensor.phase, plan.duration),
+            "{}",
+            sensor.kind
+        );
         for (k, row) in rows.iter().enumerate() {
             let t: i64 = row[0].parse().unwrap();
             assert_eq!(SimTime(t), sensor.phase + sensor.rate.tick(k as u64));
@@ -146,7 +172,8 @@ fn a_row_holds_the_bits_that_were_played() {
 
 #[test]
 fn the_block_size_changes_no_byte() {
-    let mut plans = vec![parsed(SEVERAL), plan("manoeuvre", &["duration=0.3 s"]), plan("mpu-9250", &["duration=0.3 s"])];
+    let mut plans =
+        vec![parsed(SEVERAL), plan("manoeuvre", &["duration=0.3 s"]), plan("mpu-9250", &["duration=0.3 s"])];
     for plan in &mut plans {
         let whole = written(plan, plan.duration, 256);
         for block in [1, 7] {
@@ -159,16 +186,30 @@ fn the_block_size_changes_no_byte() {
 fn playing_the_written_scene_gives_the_same_bytes() {
     let short = ["duration=0.4 s"];
     let all = crate::scene::builtin::SCENES.map(|(name, _)| plan(name, &short));
-    let uniform = plan("table-1", &["gyro.noise_variance={ uniform = [\"1e-6 rad^2/s^2\", \"9e-6 rad^2/s^2\"] }", short[0]]);
-    let mounted = plan("mpu-9250", &["gyro.mount='dlf'", "accel.range='2 g'", "mag.noise_density='0.1 uT/rtHz'", short[0]]);
-    let overridden = plan("mpu-9250", &["axes='enu-flu'", "gyro.mount=[0.5, 0.5, 0.5, 0.5]", "start.quaternion=[0.6, 0, 0.8, 0]", short[0]]);
+    let uniform = plan(
+        "table-1",
+        &["gyro.noise_variance={ uniform = [\"1e-6 rad^2/s^2\", \"9e-6 rad^2/s^2\"] }", short[0]],
+    );
+    let mounted = plan(
+        "mpu-9250",
+        &["gyro.mount='dlf'", "accel.range='2 g'", "mag.noise_density='0.1 uT/rtHz'", short[0]],
+    );
+    let overridden = plan(
+        "mpu-9250",
+        &["axes='enu-flu'", "gyro.mount=[0.5, 0.5, 0.5, 0.5]", "start.quaternion=[0.6, 0, 0.8, 0]", short[0]],
+    );
     for plan in all.into_iter().chain([uniform, mounted, overridden, parsed(SEVERAL)]) {
         let first = written(&plan, plan.duration, player::BLOCK);
-        let again = Plan::parse(std::str::from_utf8(&first["scene.toml"]).unwrap(), "scene.toml", "scene", &[]);
+        let again =
+            Plan::parse(std::str::from_utf8(&first["scene.toml"]).unwrap(), "scene.toml", "scene", &[]);
         let again = again.unwrap_or_else(|error| panic!("{}: {error}\n{}", plan.name, plan.resolved));
         let second = written(&again, again.duration, player::BLOCK);
         assert!(tables_of(&second) == tables_of(&first), "{}: {}", plan.name, plan.resolved);
-        assert_eq!(second["scene.toml"], first["scene.toml"], "{}: resolving twice is resolving once", plan.name);
+        assert_eq!(
+            second["scene.toml"], first["scene.toml"],
+            "{}: resolving twice is resolving once",
+            plan.name
+        );
     }
 }
 
@@ -184,7 +225,8 @@ fn the_written_scene_ends_where_the_run_ended() {
 #[test]
 fn adding_a_sensor_changes_no_other_sensors_file() {
     let alone = parsed(&SEVERAL[..SEVERAL.find("[accel]").unwrap()]);
-    let (few, all) = (written(&alone, SECOND, player::BLOCK), written(&parsed(SEVERAL), SECOND, player::BLOCK));
+    let (few, all) =
+        (written(&alone, SECOND, player::BLOCK), written(&parsed(SEVERAL), SECOND, player::BLOCK));
     assert_eq!(few["gyro.csv"], all["gyro.csv"]);
     assert!(!few.contains_key("accel.csv") && all.contains_key("accel.csv"));
 }
@@ -225,23 +267,32 @@ fn checksums_rows_and_columns_are_those_of_the_files() {
     let (_home, out) = place();
     let plan = parsed(SEVERAL);
     let summary = write_to(&plan, plan.duration, &out, false).unwrap();
-    let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join("manifest.json")).unwrap()).unwrap();
-    assert_eq!((&json["complete"], &json["axes"], &json["seed"]), (&true.into(), &"enu-flu".into(), &0.into()));
+    let json: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("manifest.json")).unwrap()).unwrap();
+    assert_eq!(
+        (&json["complete"], &json["axes"], &json["seed"]),
+        (&true.into(), &"enu-flu".into(), &0.into())
+    );
     let mut rows = 0;
     for file in json["files"].as_array().unwrap() {
         let bytes = fs::read(out.join(file["name"].as_str().unwrap())).unwrap();
         let text = std::str::from_utf8(&bytes).unwrap();
-        let columns: Vec<_> = file["columns"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
+        let columns: Vec<_> =
+            file["columns"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
         assert_eq!(text.lines().next().unwrap(), columns.join(","));
         assert_eq!(text.lines().count() as u64 - 1, file["rows"].as_u64().unwrap());
         assert_eq!(sha256(&bytes), file["sha256"].as_str().unwrap());
         rows += file["rows"].as_u64().unwrap();
     }
     assert_eq!(rows, summary.rows);
-    for file in json["texts"].as_array().unwrap() {
-        assert_eq!(sha256(&fs::read(out.join(file["name"].as_str().unwrap())).unwrap()), file["sha256"].as_str().unwrap());
+    for file in json["other_files"].as_array().unwrap() {
+        assert_eq!(
+            sha256(&fs::read(out.join(file["name"].as_str().unwrap())).unwrap()),
+            file["sha256"].as_str().unwrap()
+        );
     }
-    let drawn: Vec<_> = json["drawn"].as_array().unwrap().iter().map(|drawn| drawn["key"].as_str().unwrap()).collect();
+    let drawn: Vec<_> =
+        json["drawn"].as_array().unwrap().iter().map(|drawn| drawn["key"].as_str().unwrap()).collect();
     assert_eq!(drawn, ["gyro.bias", "gyro.noise_std"]);
     assert_eq!(json["sensors"][0]["sampling"], "average");
     // On a turn of 25° of bank specific force grows to 10.8 m/s², beyond the range; at first it does not.
@@ -266,9 +317,13 @@ fn a_folder_that_holds_something_is_refused_and_force_replaces_its_dataset_alone
     let (_home, out) = place();
     let (long, short) = (parsed(SEVERAL), parsed("duration = \"10 ms\"\n[mag]\nrate = \"1 kHz\"\n"));
     fs::create_dir(&out).unwrap();
-    write_to(&long, long.duration, &out, false).unwrap();
+    may_write(&out, false).unwrap();
+    let extra = [("gyro.svg".to_string(), b"<svg/>".to_vec())];
+    write(&long, long.duration, &out, Options { extra: &extra, ..Options::new(&mut |_| {}) }).unwrap();
+    assert_eq!(fs::read(out.join("gyro.svg")).unwrap(), b"<svg/>");
     let before = contents(&out);
     let refusal = write_to(&short, short.duration, &out, false).unwrap_err().to_string();
+    assert_eq!(may_write(&out, false).unwrap_err().to_string(), refusal);
     assert!(refusal.contains("already holds files") && refusal.contains("--force"), "{refusal}");
     assert!(contents(&out) == before);
 
@@ -284,14 +339,19 @@ fn a_run_that_stops_leaves_what_was_there() {
     let plan = plan("table-1", &[]);
     let stop = AtomicBool::new(false);
     let mut progress = |_| stop.store(true, Ordering::Relaxed);
-    let stopped = write(&plan, plan.duration, &out, Options { stop: Some(&stop), ..Options::new(&mut progress) });
+    let stopped =
+        write(&plan, plan.duration, &out, Options { stop: Some(&stop), ..Options::new(&mut progress) });
     assert!(matches!(stopped, Err(DatasetError::Stopped)));
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0, "not even a hidden folder");
 
     write_to(&plan, SimTime(NANOS / 100), &out, false).unwrap();
     let before = contents(&out);
-    let stopped =
-        write(&plan, plan.duration, &out, Options { force: true, stop: Some(&stop), ..Options::new(&mut |_| {}) });
+    let stopped = write(
+        &plan,
+        plan.duration,
+        &out,
+        Options { force: true, stop: Some(&stop), ..Options::new(&mut |_| {}) },
+    );
     assert!(stopped.is_err() && contents(&out) == before);
 }
 
@@ -313,7 +373,11 @@ fn errors_name_the_path_and_the_reason() {
     let (home, out) = place();
     let plan = plan("table-1", &[]);
     fs::write(&out, "a file").unwrap();
-    for (dir, says) in [(out.clone(), "is not a folder"), (out.join("deeper"), "ot a directory"), ("/proc/here".into(), "cannot create")] {
+    for (dir, says) in [
+        (out.clone(), "is not a folder"),
+        (out.join("deeper"), "ot a directory"),
+        ("/proc/here".into(), "cannot create"),
+    ] {
         let message = write_to(&plan, SECOND, &dir, true).unwrap_err().to_string();
         assert!(message.contains(says) && message.contains(&*dir.to_string_lossy()), "{message}");
     }
@@ -339,9 +403,14 @@ fn the_quaternions_sign_is_continuous_and_starts_as_given() {
     for sign in [1.0, -1.0] {
         for axes in Axes::NAMES {
             let start = [0.5, -0.5, 0.1, 0.7].map(|x: f64| x * sign);
-            let plan = parsed(&format!("axes = \"{axes}\"\nduration = \"1 s\"\n[start]\nquaternion = {start:?}\n[mag]\nrate = \"1 Hz\"\n"));
+            let plan = parsed(&format!(
+                "axes = \"{axes}\"\nduration = \"1 s\"\n[start]\nquaternion = {start:?}\n[mag]\nrate = \"1 Hz\"\n"
+            ));
             let row = table::truth(plan.axes, &plan.trajectory.at(SimTime::ZERO));
-            assert!(row.iter().zip(start).all(|(ours, given)| (ours - given).abs() < 1e-15), "{axes}: {row:?}");
+            assert!(
+                row.iter().zip(start).all(|(ours, given)| (ours - given).abs() < 1e-15),
+                "{axes}: {row:?}"
+            );
         }
     }
 }
@@ -382,9 +451,18 @@ fn what_cannot_be_read_is_placed() {
     let third = text.lines().nth(2).unwrap();
     for (bad, says) in [
         (text.replacen("qx", "other", 1), "truth.csv:1: has no column `qx`"),
-        (text.replacen(third, &third.replacen("1000000,1,", "1000000,one,", 1), 1), "truth.csv:3, column qw: `one` is no number"),
-        (text.replacen(third, &third.replacen("1000000,1,", "1000000,2,", 1), 1), "truth.csv:3, column qw..qz"),
-        (text.replacen(third, &third.replacen("1000000,", "0,", 1), 1), "truth.csv:3, column t_ns: 0 is not after 0"),
+        (
+            text.replacen(third, &third.replacen("1000000,1,", "1000000,one,", 1), 1),
+            "truth.csv:3, column qw: `one` is no number",
+        ),
+        (
+            text.replacen(third, &third.replacen("1000000,1,", "1000000,2,", 1), 1),
+            "truth.csv:3, column qw..qz",
+        ),
+        (
+            text.replacen(third, &third.replacen("1000000,", "0,", 1), 1),
+            "truth.csv:3, column t_ns: 0 is not after 0",
+        ),
         (text.replacen(third, &third.replacen("1000000,", "1.5,", 1), 1), "`1.5` is no whole number"),
         (text.replacen(third, "5,5", 1), "truth.csv:3: the row has 2 columns, the header 17"),
     ] {
@@ -403,10 +481,14 @@ fn what_cannot_be_read_is_placed() {
 fn the_figures_are_the_papers_four() {
     let plan = plan("table-1", &[]);
     let figures = figures(&plan, SimTime(3 * NANOS));
-    let stems: Vec<_> = figures.iter().map(|figure| (figure.file_stem, figure.series.len(), figure.wraps)).collect();
+    let stems: Vec<_> =
+        figures.iter().map(|figure| (figure.file_stem, figure.series.len(), figure.wraps)).collect();
     assert_eq!(stems, [("gyro", 6, false), ("accel", 6, false), ("mag", 6, false), ("angles", 3, true)]);
     let (t, rate) = figures[0].series[3].points[2500];
-    assert!((t - 2.5).abs() < 1e-12 && (rate - 20.0).abs() < 1e-12, "case 2 rolls at 20 deg/s from 2 s on: {rate}");
+    assert!(
+        (t - 2.5).abs() < 1e-12 && (rate - 20.0).abs() < 1e-12,
+        "case 2 rolls at 20 deg/s from 2 s on: {rate}"
+    );
     let (t, roll) = *figures[3].series[0].points.last().unwrap();
     assert!((t - 2.999).abs() < 1e-12 && (roll - 20.0 * 0.999).abs() < 1e-9, "{roll}");
     assert!(figures[0].series[3].is_truth && !figures[0].series[0].is_truth);
@@ -418,7 +500,19 @@ fn the_figures_are_the_papers_four() {
 fn the_readme_tells_what_a_reader_would_ask() {
     let plan = plan("mpu-9250", &[]);
     let readme = String::from_utf8(written(&plan, SimTime(NANOS / 100), 16)["README.md"].clone()).unwrap();
-    for said in ["Hamilton", "declination", "numpy", "```matlab", "ahrs", "imuSensor", "Drawn once", "gyro.bias", "point", "MPU-9250", "nose up"] {
+    for said in [
+        "Hamilton",
+        "declination",
+        "numpy",
+        "```matlab",
+        "ahrs",
+        "imuSensor",
+        "Drawn once",
+        "gyro.bias",
+        "point",
+        "MPU-9250",
+        "nose up",
+    ] {
         assert!(readme.contains(said), "{said} is missing from\n{readme}");
     }
 }
