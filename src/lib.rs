@@ -19,6 +19,7 @@
 
 pub mod cli;
 pub mod clock;
+pub mod dataset;
 pub mod double;
 pub mod earth;
 pub mod geometry;
@@ -31,8 +32,8 @@ pub mod quantity;
 pub mod random;
 pub mod report;
 pub mod scene;
-pub mod score;
 pub mod schedule;
+pub mod score;
 pub mod sensor;
 pub mod session;
 pub mod time;

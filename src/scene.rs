@@ -93,6 +93,17 @@ impl Plan {
         }
     }
 
+    /// The scene as resolved, lasting until `end`: playing it gives the bytes of a run that ended there.
+    pub fn resolved_until(&self, end: SimTime) -> String {
+        match self.resolved.parse::<toml::Table>() {
+            Ok(mut scene) if end != self.duration => {
+                scene.insert("duration".into(), end.to_string().into());
+                toml::to_string(&scene).unwrap_or_default()
+            }
+            _ => self.resolved.clone(),
+        }
+    }
+
     /// The sensor at work.
     ///
     /// # Panics

@@ -37,11 +37,7 @@ pub(super) struct Options {
 
 impl Axis {
     pub fn new(values: impl IntoIterator<Item = f64>, options: &Options) -> Self {
-        if options.log {
-            Self::log(values, options)
-        } else {
-            Self::linear(range(values), options)
-        }
+        if options.log { Self::log(values, options) } else { Self::linear(range(values), options) }
     }
 
     fn linear(range: Option<(f64, f64)>, options: &Options) -> Self {
@@ -49,7 +45,10 @@ impl Axis {
         let middle = lo / 2.0 + hi / 2.0;
         let mut half = (hi / 2.0 - lo / 2.0) * (1.0 + 2.0 * options.pad);
         if half <= middle.abs() * 1e-9 {
-            half = if middle == 0.0 { 1.0 } else { middle.abs() * 0.1 };
+            half = middle.abs() * 0.1;
+        }
+        if half < 1e-290 {
+            half = 1.0;
         }
         let (lo, hi) = (middle - half, middle + half);
         let step = step(2.0 * half, options.room.max(2), options.wrap);
@@ -60,21 +59,9 @@ impl Axis {
             .filter(|v| (lo..=hi).contains(v))
             .collect();
         let (labels, power) = labels(&values, step);
-        let mut axis = Self {
-            lo,
-            hi,
-            log: false,
-            ticks: Vec::new(),
-            power,
-        };
-        axis.ticks = values
-            .into_iter()
-            .zip(labels)
-            .map(|(v, label)| Tick {
-                at: axis.place(v),
-                label,
-            })
-            .collect();
+        let mut axis = Self { lo, hi, log: false, ticks: Vec::new(), power };
+        axis.ticks =
+            values.into_iter().zip(labels).map(|(v, label)| Tick { at: axis.place(v), label }).collect();
         axis
     }
 
@@ -103,13 +90,7 @@ impl Axis {
             _ => (lo - pad - 0.3).floor(),
         });
         (lo, hi) = (floor.unwrap_or(lo - pad), hi + pad);
-        let mut axis = Self {
-            lo,
-            hi,
-            log: true,
-            ticks: Vec::new(),
-            power: None,
-        };
+        let mut axis = Self { lo, hi, log: true, ticks: Vec::new(), power: None };
         axis.ticks = axis.decades(options.room.max(2), floor.is_some());
         axis
     }
@@ -236,8 +217,5 @@ fn power_label(mantissa: f64, exponent: i32, plain: bool) -> String {
 /// A whole number in raised digits.
 pub(super) fn superscript(n: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    n.to_string()
-        .chars()
-        .map(|c| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize]))
-        .collect()
+    n.to_string().chars().map(|c| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize])).collect()
 }

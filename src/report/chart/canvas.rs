@@ -51,12 +51,7 @@ pub(super) struct Pen {
 
 impl Pen {
     pub fn new(color: Color, width: f64) -> Self {
-        Self {
-            color,
-            width,
-            alpha: 1.0,
-            dash: None,
-        }
+        Self { color, width, alpha: 1.0, dash: None }
     }
 
     pub fn alpha(self, alpha: f64) -> Self {
@@ -64,10 +59,7 @@ impl Pen {
     }
 
     pub fn dashed(self, on: f64, off: f64) -> Self {
-        Self {
-            dash: Some((on, off)),
-            ..self
-        }
+        Self { dash: Some((on, off)), ..self }
     }
 
     fn style(&self) -> ShapeStyle {
@@ -101,13 +93,7 @@ pub(super) struct Font {
 
 impl Font {
     pub fn new(size: f64, color: Color) -> Self {
-        Self {
-            size,
-            bold: false,
-            color,
-            anchor: Anchor::Start,
-            upright: false,
-        }
+        Self { size, bold: false, color, anchor: Anchor::Start, upright: false }
     }
 
     pub fn bold(self) -> Self {
@@ -119,10 +105,7 @@ impl Font {
     }
 
     pub fn upright(self) -> Self {
-        Self {
-            upright: true,
-            ..self
-        }
+        Self { upright: true, ..self }
     }
 
     /// The length of a text in pixels, on the generous side of common sans-serif fonts.
@@ -171,14 +154,7 @@ pub(super) enum Mark {
     Cross,
 }
 
-const MARKS: [Mark; 6] = [
-    Mark::Circle,
-    Mark::Square,
-    Mark::Triangle,
-    Mark::Diamond,
-    Mark::Down,
-    Mark::Cross,
-];
+const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Down, Mark::Cross];
 
 /// The n-th mark, round and round; together with [`color`] 42 different pairs.
 pub(super) fn mark(n: usize) -> Mark {
@@ -191,18 +167,11 @@ pub(super) struct Canvas<'a> {
 }
 
 /// Draws on a sheet and returns it as an SVG document. `name` is what a screen reader says.
-pub(super) fn sheet(
-    width: f64,
-    height: f64,
-    name: &str,
-    draw: impl FnOnce(&mut Canvas<'_>),
-) -> String {
+pub(super) fn sheet(width: f64, height: f64, name: &str, draw: impl FnOnce(&mut Canvas<'_>)) -> String {
     let size = (units(width) as u32, units(height) as u32);
     let mut body = String::new();
     {
-        let mut canvas = Canvas {
-            backend: SVGBackend::with_string(&mut body, size),
-        };
+        let mut canvas = Canvas { backend: SVGBackend::with_string(&mut body, size) };
         canvas.rect((0.0, 0.0), (width, height), WHITE, 1.0);
         draw(&mut canvas);
         written(canvas.backend.present());
@@ -220,10 +189,7 @@ pub(super) fn sheet(
 impl Canvas<'_> {
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), pen: &Pen) {
         match pen.dash {
-            None => written(
-                self.backend
-                    .draw_line(point(from), point(to), &pen.style()),
-            ),
+            None => written(self.backend.draw_line(point(from), point(to), &pen.style())),
             Some(_) => self.path(&[from, to], pen),
         }
     }
@@ -242,10 +208,7 @@ impl Canvas<'_> {
 
     pub fn polygon(&mut self, points: &[(f64, f64)], fill: Color, alpha: f64) {
         let points: Vec<_> = points.iter().map(|&p| point(p)).collect();
-        written(
-            self.backend
-                .fill_polygon(points, &Pen::new(fill, 0.0).alpha(alpha).style()),
-        );
+        written(self.backend.fill_polygon(points, &Pen::new(fill, 0.0).alpha(alpha).style()));
     }
 
     pub fn rect(&mut self, at: (f64, f64), size: (f64, f64), fill: Color, alpha: f64) {
@@ -256,10 +219,7 @@ impl Canvas<'_> {
 
     pub fn ring(&mut self, at: (f64, f64), radius: f64, pen: &Pen) {
         let radius = units(radius).max(1) as u32;
-        written(
-            self.backend
-                .draw_circle(point(at), radius, &pen.style(), false),
-        );
+        written(self.backend.draw_circle(point(at), radius, &pen.style(), false));
     }
 
     pub fn mark(&mut self, mark: Mark, at: (f64, f64), r: f64, fill: Color) {
@@ -305,9 +265,7 @@ impl Canvas<'_> {
             Anchor::Middle => HPos::Center,
             Anchor::End => HPos::Right,
         };
-        let style = TextStyle::from(face)
-            .color(&font.color)
-            .pos(Pos::new(side, VPos::Center));
+        let style = TextStyle::from(face).color(&font.color).pos(Pos::new(side, VPos::Center));
         written(self.backend.draw_text(&printable(text), &style, point(at)));
     }
 }
@@ -328,20 +286,13 @@ fn point((x, y): (f64, f64)) -> (i32, i32) {
 /// A text without the characters that XML forbids.
 fn printable(text: &str) -> String {
     let plain = |c: char| {
-        if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') {
-            ' '
-        } else {
-            c
-        }
+        if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') { ' ' } else { c }
     };
     text.chars().map(plain).collect()
 }
 
 fn escaped(text: &str) -> String {
-    printable(text)
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// Cuts a path into dashes.
@@ -354,10 +305,7 @@ fn dashes(points: &[(f64, f64)], on: f64, off: f64) -> Vec<Vec<(f64, f64)>> {
         let mut length = (to.0 - from.0).hypot(to.1 - from.1);
         while length > left {
             let part = left / length;
-            from = (
-                from.0 + (to.0 - from.0) * part,
-                from.1 + (to.1 - from.1) * part,
-            );
+            from = (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part);
             length -= left;
             if drawing {
                 piece.push(from);

@@ -21,10 +21,18 @@
 
 mod axis;
 mod canvas;
+mod curve;
+mod grid;
+mod histogram;
+mod loglog;
 mod panels;
 mod plot;
 mod series;
 #[cfg(test)]
 mod tests;
 
+pub use curve::{Curve, CurveKind, Curves, curves};
+pub use grid::{Cell, Grid, Row, Verdict, grid};
+pub use histogram::{Distribution, Histogram, Marker, Shape, histogram};
+pub use loglog::{LogLog, Method, Motion, loglog};
 pub use panels::{Line, LineKind, Panel, Panels, panels};

@@ -68,14 +68,8 @@ pub fn panels(input: &Panels<'_>) -> String {
         some => some,
     };
     let plans: Vec<Plan<'_>> = plan(panels);
-    let left = plans
-        .iter()
-        .map(|p| Frame::left_margin(&p.frame.y, &p.panel.y_label))
-        .fold(0.0, f64::max);
-    let right = plans
-        .iter()
-        .map(|p| p.right_margin())
-        .fold(2.0 * MARGIN, f64::max);
+    let left = plans.iter().map(|p| Frame::left_margin(&p.frame.y, &p.panel.y_label)).fold(0.0, f64::max);
+    let right = plans.iter().map(|p| p.right_margin()).fold(2.0 * MARGIN, f64::max);
     let head = Head::new(&input.title, &input.subtitle, left + WIDTH);
     let mut height = head.height();
     let mut placed = Vec::new();
@@ -86,13 +80,13 @@ pub fn panels(input: &Panels<'_>) -> String {
         placed.push(plan);
     }
     let width = (left + WIDTH + right).max(head.width() + 2.0 * MARGIN);
-    sheet(width, height + 40.0, &input.title, |canvas| {
+    sheet(width, height + 44.0, &input.title, |canvas| {
         head.draw(canvas, MARGIN);
         let last = placed.len() - 1;
         for (i, plan) in placed.iter_mut().enumerate() {
             plan.draw(canvas, i == last);
             let label = if i == last { &input.x_label } else { "" };
-            plan.frame.draw_labels(canvas, label, &plan.panel.y_label);
+            plan.frame.draw_labels(canvas, label, &plan.panel.y_label, left);
         }
     })
 }
@@ -100,6 +94,7 @@ pub fn panels(input: &Panels<'_>) -> String {
 /// A panel with its place and axes.
 struct Plan<'a> {
     panel: &'a Panel<'a>,
+    colors: Vec<Color>,
     title: Vec<String>,
     legend: Legend,
     frame: Frame,
@@ -107,15 +102,9 @@ struct Plan<'a> {
 
 fn plan<'a>(panels: &'a [Panel<'a>]) -> Vec<Plan<'a>> {
     let times = panels.iter().flat_map(|p| &p.lines).flat_map(|l| l.x);
-    let x = Axis::new(
-        times.copied(),
-        &Options {
-            room: 10,
-            ..Options::default()
-        },
-    );
-    let plan = |panel: &'a Panel<'a>| {
-        let height = HEIGHT.max(EndLabel::height(values(panel).count()));
+    let x = Axis::new(times.copied(), &Options { room: 10, ..Options::default() });
+    let plan = |(panel, colors): (&'a Panel<'a>, Vec<Color>)| {
+        let height = HEIGHT.max(EndLabel::height(colors.len()));
         let shown = panel.lines.iter().flat_map(|l| l.y).copied();
         let options = Options {
             log: panel.log_y,
@@ -128,6 +117,7 @@ fn plan<'a>(panels: &'a [Panel<'a>]) -> Vec<Plan<'a>> {
         let font = Font::new(12.5, INK).bold();
         Plan {
             panel,
+            colors,
             title: font.wrap(&panel.title, WIDTH - legend.width - 16.0),
             legend,
             frame: Frame {
@@ -140,22 +130,47 @@ fn plan<'a>(panels: &'a [Panel<'a>]) -> Vec<Plan<'a>> {
             },
         }
     };
-    panels.iter().map(plan).collect()
+    panels.iter().zip(colors(panels)).map(plan).collect()
 }
 
-/// The lines that are not truth, each with its colour.
-fn values<'a>(panel: &'a Panel<'a>) -> impl Iterator<Item = (&'a Line<'a>, Color)> {
-    panel
-        .lines
-        .iter()
-        .filter(|l| l.kind == LineKind::Value)
-        .enumerate()
-        .map(|(i, line)| (line, color(i)))
+/// The lines that are not truth.
+fn values<'a>(panel: &'a Panel<'a>) -> impl Iterator<Item = &'a Line<'a>> {
+    let value = |l: &&Line<'_>| l.kind == LineKind::Value;
+    panel.lines.iter().filter(value)
+}
+
+/// A colour for every value of every panel: a name keeps its colour from panel to panel, and a
+/// panel with no name in common with those above it starts afresh.
+fn colors(panels: &[Panel<'_>]) -> Vec<Vec<Color>> {
+    let mut known: Vec<(&str, usize)> = Vec::new();
+    let mut all = Vec::new();
+    for panel in panels {
+        let find = |known: &[(&str, usize)], name: &str| {
+            let same = |k: &&(&str, usize)| k.0 == name;
+            known.iter().find(same).map(|k| k.1)
+        };
+        let shares = values(panel).any(|l| find(&known, l.name).is_some());
+        let mut next = match shares {
+            true => known.iter().map(|k| k.1 + 1).max().unwrap_or(0),
+            false => 0,
+        };
+        let mut own = Vec::new();
+        for line in values(panel) {
+            let n = find(&known, line.name).unwrap_or_else(|| {
+                known.push((line.name, next));
+                next += 1;
+                next - 1
+            });
+            own.push(color(n));
+        }
+        all.push(own);
+    }
+    all
 }
 
 fn truth(panel: &Panel<'_>) -> Pen {
     let only = panel.lines.iter().all(|l| l.kind == LineKind::Truth);
-    Pen::new(INK, if only { 1.2 } else { 0.75 })
+    Pen::new(INK, if only { 1.4 } else { 0.9 })
 }
 
 fn truth_entries(panel: &Panel<'_>) -> Vec<(Sign, String)> {
@@ -175,7 +190,7 @@ impl Plan<'_> {
     }
 
     fn right_margin(&self) -> f64 {
-        let names: Vec<&str> = values(self.panel).map(|(l, _)| l.name).collect();
+        let names: Vec<&str> = values(self.panel).map(|l| l.name).collect();
         22.0 + longest(&Font::new(SMALL, INK), &names) + MARGIN
     }
 
@@ -190,18 +205,13 @@ impl Plan<'_> {
         self.legend.draw(canvas, x, above - 2.0);
         self.frame.draw_axes(canvas, last);
         let mut labels = Vec::new();
-        // A broad line stays visible under a thin dark one.
-        let width = if self.legend.height > 0.0 { 2.0 } else { 1.1 };
-        for (line, color) in values(self.panel) {
-            self.draw_line(canvas, line, &Pen::new(color, width));
+        // A broad pale line stays visible under a thin dark one.
+        let truth_too = self.legend.height > 0.0;
+        let (width, alpha) = if truth_too { (3.0, 0.6) } else { (1.4, 1.0) };
+        for (line, &color) in values(self.panel).zip(&self.colors) {
+            self.draw_line(canvas, line, &Pen::new(color, width).alpha(alpha));
             if let Some(end) = self.end(line) {
-                labels.push(EndLabel {
-                    text: line.name.to_owned(),
-                    color,
-                    mark: None,
-                    bold: false,
-                    end,
-                });
+                labels.push(EndLabel { text: line.name.to_owned(), color, mark: None, bold: false, end });
             }
         }
         for line in &self.panel.lines {
@@ -218,10 +228,8 @@ impl Plan<'_> {
 
     fn draw_line(&self, canvas: &mut Canvas<'_>, line: &Line<'_>, pen: &Pen) {
         let place = |run: Vec<(f64, f64)>| run.into_iter().map(|p| self.frame.at(p)).collect();
-        let placed: Vec<Vec<(f64, f64)>> = runs(line.x, line.y, self.panel.wrap)
-            .into_iter()
-            .map(place)
-            .collect();
+        let placed: Vec<Vec<(f64, f64)>> =
+            runs(line.x, line.y, self.panel.wrap).into_iter().map(place).collect();
         for run in thin_runs(&placed, self.frame.width) {
             match run.as_slice() {
                 &[(x, y)] => canvas.line((x - 1.0, y), (x + 1.0, y), &Pen { width: 2.0, ..*pen }),

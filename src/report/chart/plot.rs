@@ -39,8 +39,7 @@ impl Head {
 
     /// The length of the longest line: a single long word does not break.
     pub fn width(&self) -> f64 {
-        longest(&Self::title_font(), &self.title)
-            .max(longest(&Self::subtitle_font(), &self.subtitle))
+        longest(&Self::title_font(), &self.title).max(longest(&Self::subtitle_font(), &self.subtitle))
     }
 
     pub fn draw(&self, canvas: &mut Canvas<'_>, x: f64) {
@@ -59,10 +58,7 @@ impl Head {
 
 /// The length of the longest of some lines of text.
 pub(super) fn longest<S: AsRef<str>>(font: &Font, lines: &[S]) -> f64 {
-    lines
-        .iter()
-        .map(|line| font.width(line.as_ref()))
-        .fold(0.0, f64::max)
+    lines.iter().map(|line| font.width(line.as_ref())).fold(0.0, f64::max)
 }
 
 /// The place of a plot with its axes.
@@ -95,10 +91,7 @@ impl Frame {
 
     /// Where a point of the data lies on the sheet.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        (
-            self.left + self.x.place(x) * self.width,
-            self.bottom() - self.y.place(y) * self.height,
-        )
+        (self.left + self.x.place(x) * self.width, self.bottom() - self.y.place(y) * self.height)
     }
 
     /// The grid, the lines of the axes, and the labels of the ticks.
@@ -109,7 +102,7 @@ impl Frame {
             canvas.line((x, self.top), (x, self.bottom()), &grid);
             if x_labels && !tick.label.is_empty() {
                 let font = font.anchor(Anchor::Middle);
-                canvas.text(&tick.label, (x, self.bottom() + 11.0), &font);
+                canvas.text(&tick.label, (x, self.bottom() + 14.0), &font);
             }
         }
         for tick in &self.y.ticks {
@@ -125,25 +118,21 @@ impl Frame {
             canvas.text(power, (self.left - 6.0, self.top - 12.0), &font);
         }
         if let (Some(power), true) = (&self.x.power, x_labels) {
-            let at = (self.right(), self.bottom() + 27.0);
+            let at = (self.right(), self.bottom() + 32.0);
             canvas.text(power, at, &font.anchor(Anchor::End));
         }
         let edge = Pen::new(FAINT, 0.75);
-        let corners = [
-            (self.left, self.top),
-            (self.left, self.bottom()),
-            (self.right(), self.bottom()),
-        ];
+        let corners = [(self.left, self.top), (self.left, self.bottom()), (self.right(), self.bottom())];
         canvas.path(&corners, &edge);
     }
 
-    /// What the axes mean: below the plot, and left of its tick labels.
-    pub fn draw_labels(&self, canvas: &mut Canvas<'_>, x_label: &str, y_label: &str) {
+    /// What the axes mean: below the plot, and `margin` left of it less the sheet's own.
+    pub fn draw_labels(&self, canvas: &mut Canvas<'_>, x_label: &str, y_label: &str, margin: f64) {
         let font = Font::new(12.0, INK).anchor(Anchor::Middle);
         let middle = self.left + self.width / 2.0;
-        canvas.text(x_label, (middle, self.bottom() + 28.0), &font);
+        canvas.text(x_label, (middle, self.bottom() + 32.0), &font);
         if !y_label.is_empty() {
-            let x = self.left - Self::left_margin(&self.y, y_label) + MARGIN + 4.0;
+            let x = self.left - margin + MARGIN + 4.0;
             let middle = self.top + self.height / 2.0;
             canvas.text(y_label, (x, middle), &font.upright());
         }
@@ -152,10 +141,7 @@ impl Frame {
     /// Says that there is nothing to show.
     pub fn draw_no_data(&self, canvas: &mut Canvas<'_>) {
         let font = Font::new(14.0, FAINT).anchor(Anchor::Middle);
-        let at = (
-            self.left + self.width / 2.0,
-            self.top + self.height / 2.0,
-        );
+        let at = (self.left + self.width / 2.0, self.top + self.height / 2.0);
         canvas.text("no data", at, &font);
     }
 }
@@ -185,10 +171,15 @@ const SIGN: f64 = 24.0;
 impl Legend {
     pub fn new(entries: Vec<(Sign, String)>, width: f64) -> Self {
         let font = Font::new(SMALL, INK);
+        let length = |name: &str| SIGN + 6.0 + font.width(name) + 16.0;
+        let lengths: Vec<f64> = entries.iter().map(|(_, name)| length(name)).collect();
+        let column = lengths.iter().copied().fold(0.0, f64::max);
+        let one_row = lengths.iter().sum::<f64>() <= width;
         let (mut x, mut y, mut widest) = (0.0, 0.0, 0.0_f64);
         let mut places = Vec::new();
-        for (_, name) in &entries {
-            let length = SIGN + 6.0 + font.width(name) + 16.0;
+        for length in lengths {
+            // Several rows stand in columns.
+            let length = if one_row { length } else { column };
             if x > 0.0 && x + length > width {
                 (x, y) = (0.0, y + 18.0);
             }
@@ -197,12 +188,7 @@ impl Legend {
             widest = widest.max(x);
         }
         let height = if entries.is_empty() { 0.0 } else { y + 18.0 };
-        Self {
-            entries,
-            places,
-            width: widest,
-            height,
-        }
+        Self { entries, places, width: widest, height }
     }
 
     pub fn draw(&self, canvas: &mut Canvas<'_>, left: f64, top: f64) {

@@ -10,13 +10,10 @@ pub(super) fn drawable(v: f64) -> bool {
 
 /// The least and greatest of the numbers that can be drawn.
 pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values
-        .into_iter()
-        .filter(|&v| drawable(v))
-        .fold(None, |range, v| match range {
-            None => Some((v, v)),
-            Some((lo, hi)) => Some((v.min(lo), v.max(hi))),
-        })
+    values.into_iter().filter(|&v| drawable(v)).fold(None, |range, v| match range {
+        None => Some((v, v)),
+        Some((lo, hi)) => Some((v.min(lo), v.max(hi))),
+    })
 }
 
 /// Cuts points into runs to be joined by lines: a value that is not finite makes a gap, and so
@@ -66,9 +63,7 @@ pub(super) fn thin_runs(runs: &[Vec<(f64, f64)>], columns: f64) -> Vec<Vec<(f64,
         return runs.iter().map(|run| thin(run)).collect();
     }
     let all: Vec<(f64, f64)> = runs.iter().flatten().copied().collect();
-    all.chunk_by(|a, b| a.0.floor() == b.0.floor())
-        .map(thin)
-        .collect()
+    all.chunk_by(|a, b| a.0.floor() == b.0.floor()).map(thin).collect()
 }
 
 fn extremes(group: &[(f64, f64)]) -> (usize, usize) {
@@ -104,9 +99,7 @@ pub(super) fn spread(wanted: &[f64], gap: f64, lo: f64, hi: f64) -> Vec<f64> {
         clusters.push(cluster);
     }
     let top = lo.max(hi - count.saturating_sub(1) as f64 * gap);
-    let means = clusters
-        .iter()
-        .flat_map(|&(sum, n)| std::iter::repeat_n(sum / n as f64, n));
+    let means = clusters.iter().flat_map(|&(sum, n)| std::iter::repeat_n(sum / n as f64, n));
     let mut placed = vec![0.0; count];
     for (rank, (mean, &i)) in means.zip(&order).enumerate() {
         placed[i] = mean.clamp(lo, top) + rank as f64 * gap;

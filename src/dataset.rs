@@ -1,0 +1,192 @@
+//! A scene played into a folder: readings, exact truth, and all that is needed to read them without asking.
+//!
+//! ```text
+//! README.md       axes, conventions, how to load it
+//! scene.toml      the scene as resolved: playing it gives the same bytes
+//! manifest.json   version, seed, columns with units, counts, checksums
+//! truth.csv       at every distinct tick of any sensor
+//! gyro.csv accel.csv mag.csv      one for each sensor that the scene has
+//! estimate.csv    what the other side answered, where it did
+//! ```
+//!
+//! Everything is in the scene's axes. The folder appears under its name only when it is complete. A format is a
+//! [`Format`]: to add one, write one file beside this one and one line in [`FORMATS`].
+
+mod csv;
+mod error;
+mod figures;
+mod folder;
+mod format;
+mod manifest;
+pub mod read;
+mod readme;
+mod table;
+
+pub use error::DatasetError;
+pub use figures::{Figure, Series, figures};
+pub use format::{FORMATS, Format, Writer};
+pub use manifest::FileEntry;
+pub use table::{Column, Table};
+
+use crate::geometry::Attitude;
+use crate::player::{self, Player};
+use crate::scene::Plan;
+use crate::time::SimTime;
+use folder::Folder;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How a dataset is written.
+pub struct Options<'a> {
+    /// Replace the dataset that is already there.
+    pub force: bool,
+    /// In which formats, each holding the same tables.
+    pub formats: Vec<&'static Format>,
+    /// Attitudes that the other side answered, in order of time; none = no `estimate.csv`.
+    pub estimates: &'a [(SimTime, Attitude)],
+    /// Further files that the caller made, such as figures: a plain name and the contents.
+    pub extra: &'a [(String, Vec<u8>)],
+    /// Called now and then with the scene time that has been written.
+    pub progress: &'a mut dyn FnMut(SimTime),
+    /// Once true, writing stops with [`DatasetError::Stopped`] and leaves nothing behind.
+    pub stop: Option<&'a AtomicBool>,
+}
+
+impl<'a> Options<'a> {
+    /// CSV, nothing replaced, no estimates, no further files.
+    pub fn new(progress: &'a mut dyn FnMut(SimTime)) -> Options<'a> {
+        Options { force: false, formats: vec![FORMATS[0]], estimates: &[], extra: &[], progress, stop: None }
+    }
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Its files of numbers, with rows, columns and checksums.
+    pub files: Vec<FileEntry>,
+    /// Rows in all files together.
+    pub rows: u64,
+    /// Samples beyond their sensor's range, in the plan's order of sensors.
+    pub clipped: Vec<u64>,
+}
+
+/// Whether [`write`] would accept the folder, asked before a run that takes its time. Nothing is changed.
+///
+/// # Errors
+/// It holds something and `force` is off, or it is no folder.
+pub fn may_write(dir: &Path, force: bool) -> Result<(), DatasetError> {
+    folder::may_write(dir, force).map(|_| ())
+}
+
+/// Plays `plan` from 0 up to, not including, `end` and writes the folder `dir`.
+///
+/// # Errors
+/// The folder holds something and `force` is off, a path cannot be written, the disk is full, or it was stopped.
+/// Then `dir` is as it was before.
+pub fn write(plan: &Plan, end: SimTime, dir: &Path, options: Options<'_>) -> Result<Summary, DatasetError> {
+    write_in_blocks(plan, end, dir, options, player::BLOCK)
+}
+
+/// The same with the player's block size given, which changes no byte.
+fn write_in_blocks(
+    plan: &Plan,
+    end: SimTime,
+    dir: &Path,
+    options: Options<'_>,
+    block: usize,
+) -> Result<Summary, DatasetError> {
+    if end == SimTime::FOREVER {
+        return Err(DatasetError::Endless);
+    }
+    let folder = Folder::open(dir, options.force)?;
+    let tables = table::of(plan, !options.estimates.is_empty());
+    let mut book = Book::open(&tables, &folder, &options.formats)?;
+    let clipped = play(plan, end, block, &mut book, options.progress, options.stop)?;
+    for (t, attitude) in options.estimates {
+        book.row(tables.len() - 1, *t, &table::quaternion(plan.axes, *attitude))?;
+    }
+    let files = book.close(&folder)?;
+
+    let (readme, scene) = (readme::text(plan, &files), plan.resolved_until(end));
+    let mut others = vec![("README.md", readme.as_bytes()), ("scene.toml", scene.as_bytes())];
+    others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
+    for (name, contents) in &others {
+        folder.put(name, contents)?;
+    }
+    let others: Vec<_> = others.into_iter().map(|(name, _)| name).collect();
+    folder.put("manifest.json", manifest::text(plan, end, &files, &others, &clipped, &folder)?.as_bytes())?;
+    folder.commit()?;
+    let rows = files.iter().map(|file| file.rows).sum();
+    Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })
+}
+
+/// Every moment into the book; gives back each sensor's clipped samples.
+fn play(
+    plan: &Plan,
+    end: SimTime,
+    block: usize,
+    book: &mut Book<'_>,
+    progress: &mut dyn FnMut(SimTime),
+    stop: Option<&AtomicBool>,
+) -> Result<Vec<u64>, DatasetError> {
+    let mut clipped = vec![0; plan.sensors.len()];
+    let mut player = Player::new(plan, end, block);
+    let mut now = SimTime::ZERO;
+    loop {
+        let more = player.play_block(|moment| {
+            now = moment.t;
+            book.row(table::TRUTH, moment.t, &table::truth(plan.axes, moment.truth))?;
+            for reading in moment.readings {
+                clipped[reading.sensor] += u64::from(reading.clipped);
+                book.row(table::TRUTH + 1 + reading.sensor, moment.t, &table::reading(plan.axes, reading))?;
+            }
+            Ok(())
+        })?;
+        if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+            return Err(DatasetError::Stopped);
+        }
+        if !more {
+            return Ok(clipped);
+        }
+        progress(now);
+    }
+}
+
+/// The tables being written, in every format asked for.
+struct Book<'a> {
+    tables: &'a [Table],
+    rows: Vec<u64>,
+    writers: Vec<(&'static Format, Box<dyn Writer>)>,
+}
+
+impl<'a> Book<'a> {
+    fn open(
+        tables: &'a [Table],
+        folder: &Folder,
+        formats: &[&'static Format],
+    ) -> Result<Book<'a>, DatasetError> {
+        let writers = formats.iter().map(|format| Ok((*format, (format.open)(tables, folder)?)));
+        Ok(Book { tables, rows: vec![0; tables.len()], writers: writers.collect::<Result<_, _>>()? })
+    }
+
+    fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError> {
+        self.rows[table] += 1;
+        self.writers.iter_mut().try_for_each(|(_, writer)| writer.row(table, t, values))
+    }
+
+    fn close(self, folder: &Folder) -> Result<Vec<FileEntry>, DatasetError> {
+        let mut files = Vec::new();
+        for (format, writer) in self.writers {
+            for (name, table) in writer.finish()? {
+                let columns = self.tables[table].columns.clone();
+                files.push(FileEntry::of(folder, name, format.name, self.rows[table], columns)?);
+            }
+        }
+        Ok(files)
+    }
+}
+
+#[cfg(test)]
+mod tests;

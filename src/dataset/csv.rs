@@ -1,0 +1,79 @@
+//! Comma-separated values: a header, then numbers in the shortest form that reads back to the same bits.
+
+use super::error::DatasetError;
+use super::folder::{Folder, Sink};
+use super::format::{Format, Writer};
+use super::table::Table;
+use crate::time::SimTime;
+use std::io::Write;
+
+pub(super) static FORMAT: Format = Format { name: "csv", about: "one text file a table", open };
+
+fn open(tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer>, DatasetError> {
+    let mut files = Vec::with_capacity(tables.len());
+    for table in tables {
+        let name = format!("{}.csv", table.name);
+        let mut sink = folder.file(&name)?;
+        let header: Vec<_> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        sink.put(format!("{}\n", header.join(",")).as_bytes())?;
+        files.push((name, sink));
+    }
+    Ok(Box::new(Csv { files, line: Vec::with_capacity(512), digits: ryu::Buffer::new() }))
+}
+
+struct Csv {
+    files: Vec<(String, Sink)>,
+    line: Vec<u8>,
+    digits: ryu::Buffer,
+}
+
+impl Writer for Csv {
+    fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError> {
+        self.line.clear();
+        // Writing to a vector cannot fail.
+        let _ = write!(self.line, "{}", t.0);
+        for value in values {
+            self.line.push(b',');
+            self.line.extend_from_slice(shortest(*value, &mut self.digits).as_bytes());
+        }
+        self.line.push(b'\n');
+        self.files[table].1.put(&self.line)
+    }
+
+    fn finish(self: Box<Self>) -> Result<Vec<(String, usize)>, DatasetError> {
+        let close = |(table, (name, sink)): (usize, (String, Sink))| sink.close().map(|()| (name, table));
+        self.files.into_iter().enumerate().map(close).collect()
+    }
+}
+
+/// The shortest decimal of these bits; a whole number has no point, and −0 is 0.
+fn shortest(value: f64, digits: &mut ryu::Buffer) -> &str {
+    let text = digits.format(value + 0.0);
+    text.strip_suffix(".0").unwrap_or(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn any_number_reads_back_to_the_same_bits(value in any::<f64>().prop_filter("-0 is 0", |x| *x != 0.0)) {
+            let mut digits = ryu::Buffer::new();
+            let text = shortest(value, &mut digits);
+            prop_assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits());
+            prop_assert!(text.len() <= format!("{value:?}").len(), "{} is not the shortest", text);
+        }
+    }
+
+    #[test]
+    fn whole_numbers_have_no_point_and_no_zero_has_a_sign() {
+        let mut digits = ryu::Buffer::new();
+        for (value, text) in
+            [(0.0, "0"), (-0.0, "0"), (-3.0, "-3"), (0.1, "0.1"), (1e-9, "1e-9"), (2.5e20, "2.5e20")]
+        {
+            assert_eq!(shortest(value, &mut digits), text);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Why a dataset could not be written or read.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What went wrong, with the path it went wrong at.
+///
+/// One enum for the room: a caller only shows it, so each names the path, the reason, and where it helps what
+/// would be right.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DatasetError {
+    /// The output folder holds something.
+    #[error("{} already holds files; name another folder, or replace the dataset in it with --force", path.display())]
+    Exists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The output path is something else.
+    #[error("{} is not a folder; a dataset is a folder, so name a new one", path.display())]
+    NotAFolder {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A scene played for ever has no last row.
+    #[error("a dataset needs an end: give a time, such as 60s, not `forever`")]
+    Endless,
+    /// Asked to stop.
+    #[error("stopped before the dataset was complete; nothing was kept")]
+    Stopped,
+    /// The system refused.
+    #[error("cannot {doing} {}: {source}", path.display())]
+    Io {
+        /// Such as `write`.
+        doing: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A file that is there but cannot be understood.
+    #[error("{place}: {problem}")]
+    Content {
+        /// File, line and column name, as far as known.
+        place: String,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+}
+
+impl DatasetError {
+    /// For `map_err` of an operation at `path`.
+    pub(super) fn io<'a>(doing: &'static str, path: &'a Path) -> impl Fn(io::Error) -> DatasetError + 'a {
+        move |source| DatasetError::Io { doing, path: path.to_path_buf(), source }
+    }
+}

@@ -1,0 +1,168 @@
+//! `manifest.json`: what a program needs to know of a dataset without reading its numbers.
+
+use super::error::DatasetError;
+use super::folder::Folder;
+use super::readme;
+use super::table::Column;
+use crate::scene::{Drawn, Plan};
+use crate::sensor::{Sampling, SensorPlan};
+use crate::time::SimTime;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+/// A file of numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FileEntry {
+    /// Its name in the folder.
+    pub name: String,
+    /// The name of its format.
+    pub format: &'static str,
+    /// Rows, the header not counted.
+    pub rows: u64,
+    /// Its columns in order.
+    pub columns: Vec<Column>,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+impl FileEntry {
+    pub(super) fn of(
+        folder: &Folder,
+        name: String,
+        format: &'static str,
+        rows: u64,
+        columns: Vec<Column>,
+    ) -> Result<FileEntry, DatasetError> {
+        let sha256 = checksum(&folder.path(&name))?;
+        Ok(FileEntry { name, format, rows, columns, sha256 })
+    }
+}
+
+#[derive(Serialize)]
+struct Manifest<'a> {
+    program: &'static str,
+    version: &'static str,
+    scene: &'a str,
+    seed: u64,
+    axes: String,
+    duration_ns: i64,
+    complete: bool,
+    conventions: BTreeMap<&'static str, String>,
+    sensors: Vec<SensorEntry>,
+    parts: BTreeMap<&'static str, &'static str>,
+    drawn: &'a [Drawn],
+    faults: [String; 0],
+    files: &'a [FileEntry],
+    other_files: Vec<OtherEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct SensorEntry {
+    name: &'static str,
+    unit: &'static str,
+    rate: String,
+    rate_hz: f64,
+    phase_ns: i64,
+    sampling: &'static str,
+    mount: Option<String>,
+    terms: Vec<&'static str>,
+    samples: u64,
+    clipped: u64,
+}
+
+#[derive(Serialize)]
+struct OtherEntry<'a> {
+    name: &'a str,
+    sha256: String,
+}
+
+/// The manifest of a dataset whose other files are written.
+pub(super) fn text(
+    plan: &Plan,
+    end: SimTime,
+    files: &[FileEntry],
+    others: &[&str],
+    clipped: &[u64],
+    folder: &Folder,
+) -> Result<String, DatasetError> {
+    let other = |&name| Ok(OtherEntry { name, sha256: checksum(&folder.path(name))? });
+    let part = |sensor: &SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
+    let manifest = Manifest {
+        program: env!("CARGO_PKG_NAME"),
+        version: env!("CARGO_PKG_VERSION"),
+        scene: &plan.name,
+        seed: plan.seed,
+        axes: plan.axes.to_string(),
+        duration_ns: end.0,
+        complete: true,
+        conventions: readme::conventions(plan),
+        sensors: sensors(plan, end, clipped),
+        parts: plan.sensors.iter().filter_map(part).collect(),
+        drawn: &plan.drawn,
+        faults: [],
+        files,
+        other_files: others.iter().map(other).collect::<Result<_, DatasetError>>()?,
+    };
+    let text = serde_json::to_string_pretty(&manifest).map_err(io::Error::other);
+    Ok(text.map_err(DatasetError::io("write", Path::new("manifest.json")))? + "\n")
+}
+
+fn sensors(plan: &Plan, end: SimTime, clipped: &[u64]) -> Vec<SensorEntry> {
+    let entry = |(sensor, &clipped): (&SensorPlan, &u64)| SensorEntry {
+        name: sensor.kind.name(),
+        unit: sensor.kind.unit(),
+        rate: sensor.rate.to_string(),
+        rate_hz: sensor.rate.as_hz(),
+        phase_ns: sensor.phase.0,
+        sampling: sampling_name(sensor.sampling),
+        mount: sensor.mount.map(|mount| mount.to_string()),
+        terms: plan.build(sensor).terms().to_vec(),
+        samples: sensor.rate.ticks_before(sensor.phase, end),
+        clipped,
+    };
+    plan.sensors.iter().zip(clipped).map(entry).collect()
+}
+
+/// As a scene spells it.
+pub(super) fn sampling_name(sampling: Sampling) -> &'static str {
+    match sampling {
+        Sampling::Point => "point",
+        Sampling::Average => "average",
+    }
+}
+
+/// SHA-256 of a file as it stands on the disk.
+pub(super) fn checksum(path: &Path) -> Result<String, DatasetError> {
+    let digest = || {
+        let mut hasher = Sha256::new();
+        let mut file = io::BufReader::with_capacity(1 << 18, File::open(path)?);
+        loop {
+            let chunk = io::BufRead::fill_buf(&mut file)?;
+            if chunk.is_empty() {
+                return Ok(hasher.finalize());
+            }
+            hasher.update(chunk);
+            let read = chunk.len();
+            io::BufRead::consume(&mut file, read);
+        }
+    };
+    let digest = digest().map_err(DatasetError::io("read back", path))?;
+    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+/// The files that the manifest of an existing dataset lists: plain names in its own folder; none without one.
+pub(super) fn files_of(folder: &Path) -> Vec<String> {
+    let json = read_json(folder).unwrap_or_default();
+    let listed = ["files", "other_files"].into_iter().filter_map(|key| json.get(key)?.as_array());
+    let names = listed.flatten().filter_map(|file| file.get("name")?.as_str());
+    names.filter(|name| Path::new(name).file_name() == Some(name.as_ref())).map(String::from).collect()
+}
+
+/// The manifest in a folder, if there is one and it is JSON.
+pub(super) fn read_json(folder: &Path) -> Option<serde_json::Value> {
+    serde_json::from_str(&std::fs::read_to_string(folder.join("manifest.json")).ok()?).ok()
+}

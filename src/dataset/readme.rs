@@ -1,0 +1,240 @@
+//! `README.md`: everything a reader of the numbers would otherwise have to ask.
+
+use super::manifest::{self, FileEntry};
+use crate::geometry::{Attitude, Axes};
+use crate::scene::Plan;
+use crate::sensor::{SensorKind, SensorPlan};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// What the columns mean, by subject; in the manifest as well.
+pub(super) fn conventions(plan: &Plan) -> BTreeMap<&'static str, String> {
+    let (nav, body, euler) = match plan.axes {
+        Axes::NedFrd => (
+            "North-East-Down",
+            "Forward-Right-Down",
+            "yaw 0 faces north and grows clockwise seen from above; positive pitch is nose up; positive roll is right side down",
+        ),
+        Axes::EnuFlu => (
+            "East-North-Up",
+            "Forward-Left-Up",
+            "yaw 0 faces east and grows counter-clockwise seen from above, so the compass heading is 90° - yaw; positive pitch is nose DOWN; positive roll is right side down",
+        ),
+    };
+    let at_rest = at_rest(plan);
+    BTreeMap::from([
+        ("nav_frame", format!("{nav}, local level")),
+        ("body_frame", body.to_string()),
+        (
+            "quaternion",
+            "Hamilton, scalar first, unit norm; takes body vectors to nav: v_nav = q * v_body * conj(q); its sign is continuous in time".to_string(),
+        ),
+        (
+            "euler",
+            format!("of that quaternion, Rz(yaw) Ry(pitch) Rx(roll), rad; roll and yaw in (-pi, pi], pitch in [-pi/2, pi/2]; at pitch = ±pi/2 roll is 0 and yaw carries the rest; {euler}"),
+        ),
+        ("angular_rate", "of body relative to nav, in body axes, rad/s".to_string()),
+        (
+            "specific_force",
+            format!("acceleration minus gravity, in body axes, m/s^2; level at rest the accelerometer reads {at_rest}"),
+        ),
+        ("magnetic_field", "in body axes, uT".to_string()),
+        ("time", "t_ns: whole nanoseconds from the scene's start".to_string()),
+    ])
+}
+
+/// What an error-free accelerometer reads level (roll and pitch 0) and at rest, as the scene's axes write it.
+fn at_rest(plan: &Plan) -> String {
+    let level = Attitude::IDENTITY;
+    triple(plan.axes.body_out(level.inverse().apply(-plan.trajectory.gravity())))
+}
+
+fn triple(v: glam::DVec3) -> String {
+    format!("[{}, {}, {}]", v.x + 0.0, v.y + 0.0, v.z + 0.0)
+}
+
+/// The whole text.
+pub(super) fn text(plan: &Plan, files: &[FileEntry]) -> String {
+    let sections = [
+        heading(plan),
+        conventions_section(plan),
+        field_section(plan),
+        files_section(files),
+        readings_section(plan),
+        loading_section(plan),
+        matlab_section(plan.axes),
+    ];
+    sections.join("\n")
+}
+
+fn heading(plan: &Plan) -> String {
+    let (name, axes, seed, version) = (&plan.name, plan.axes, plan.seed, env!("CARGO_PKG_VERSION"));
+    format!(
+        "# Dataset `{name}`
+
+Simulated sensor readings with their exact truth, in the axes **{axes}**; seed {seed}, ratetable {version}.
+
+**Level at rest the accelerometer reads `{}` m/s²** (specific force, acceleration minus gravity).
+
+`scene.toml` is the whole input, every default and drawn value filled in: `ratetable generate scene.toml --out DIR`
+gives these files again, byte for byte. `manifest.json` says the same as this page to programs, with checksums.
+",
+        at_rest(plan)
+    )
+}
+
+fn conventions_section(plan: &Plan) -> String {
+    let mut text = String::from("## Conventions\n\n");
+    for (subject, meaning) in conventions(plan) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "- {}: {meaning}", subject.replace('_', " "));
+    }
+    text
+}
+
+fn field_section(plan: &Plan) -> String {
+    let field = plan.trajectory.field();
+    let nav = triple(plan.axes.nav_out(field));
+    let horizontal = libm::hypot(field.v.x, field.v.y);
+    let mut text =
+        format!("## Magnetic field\n\nIn nav axes `{nav}` uT, the same everywhere in this dataset. ");
+    if horizontal > 0.0 {
+        let declination = libm::atan2(field.v.y, field.v.x).to_degrees();
+        let dip = libm::atan2(field.v.z, horizontal).to_degrees();
+        let _ = writeln!(
+            text,
+            "Its declination is {declination:.4}° (east positive) and it dips {dip:.4}° below the horizon. The \
+             attitudes of `truth.csv` are relative to **true** north: a filter that takes the magnetometer's \
+             north for true north is off by the declination."
+        );
+    } else {
+        text.push_str("It has no horizontal part, so it says nothing of heading.\n");
+    }
+    text
+}
+
+fn files_section(files: &[FileEntry]) -> String {
+    let mut text = String::from("## Files\n\n| file | rows | columns |\n|---|---|---|\n");
+    for file in files {
+        let columns: Vec<_> = file.columns.iter().map(|column| column.name.as_str()).collect();
+        let _ = writeln!(text, "| `{}` | {} | `{}` |", file.name, file.rows, columns.join(","));
+    }
+    text.push_str(
+        "
+- `truth.csv`: the exact attitude, angular rate, specific force and magnetic field, without any sensor's errors, at
+  every time at which any sensor has a sample.
+- a sensor's file: what it reads (`x`, `y`, `z`); the error-free reading (`true_`), sampled as the reading is; and
+  the bias in effect (`bias_`). All in the scene's body axes, however the part is mounted.
+- Numbers are in the shortest form that reads back to the same double.
+",
+    );
+    text
+}
+
+fn readings_section(plan: &Plan) -> String {
+    let mut text = String::from("## Sensors\n\n");
+    for sensor in &plan.sensors {
+        let _ = writeln!(text, "- {}", describe(sensor));
+    }
+    if plan.drawn.is_empty() {
+        text.push_str("\nNo value of the scene was drawn at random besides the noise itself.\n");
+    } else {
+        text.push_str("\nDrawn once for this run:\n\n");
+        for drawn in &plan.drawn {
+            let _ = writeln!(text, "- `{}` = {}", drawn.key, drawn.value);
+        }
+    }
+    text
+}
+
+fn describe(sensor: &SensorPlan) -> String {
+    let sampling = match manifest::sampling_name(sensor.sampling) {
+        "average" => "averaged: each sample is the mean over the interval that ends at its time",
+        _ => "point: each sample is the value at its time",
+    };
+    let part = sensor.part.map_or(String::new(), |part| format!(", values of the part {part}"));
+    format!("{}: {}, sampling {sampling}{part}", sensor.kind, sensor.rate)
+}
+
+fn loading_section(plan: &Plan) -> String {
+    let mut text = String::from(
+        "## Loading
+
+Python with numpy:
+
+```python
+import numpy as np
+
+def load(name):
+    return np.genfromtxt(name + \".csv\", delimiter=\",\", names=True)
+
+def xyz(table):
+    return np.column_stack([table[column] for column in table.dtype.names[1:4]])
+
+truth = load(\"truth\")
+q = np.column_stack([truth[c] for c in (\"qw\", \"qx\", \"qy\", \"qz\")])
+",
+    );
+    for kind in plan.sensors.iter().map(|sensor| sensor.kind) {
+        let _ = writeln!(text, "{kind} = load(\"{kind}\")            # {kind}[\"t_ns\"], xyz({kind})");
+    }
+    text.push_str("```\n");
+    text.push_str(&ahrs(plan));
+    text
+}
+
+/// For a scene with all three sensors, a filter of the Python package `ahrs` on the numbers loaded above.
+fn ahrs(plan: &Plan) -> String {
+    let [Some(gyro), Some(_), Some(_)] =
+        SensorKind::ALL.map(|kind| plan.sensors.iter().find(|sensor| sensor.kind == kind))
+    else {
+        return String::new();
+    };
+    let (rate, frame) = (gyro.rate.as_hz(), if plan.axes == Axes::NedFrd { "NED" } else { "ENU" });
+    format!(
+        "
+The Python package `ahrs`, continuing; accelerometer and magnetometer hold their latest sample at the gyroscope's
+times:
+
+```python
+from ahrs.filters import EKF
+
+def held(table):
+    index = np.searchsorted(table[\"t_ns\"], gyro[\"t_ns\"], side=\"right\") - 1
+    return xyz(table)[np.maximum(index, 0)]
+
+estimate = EKF(gyr=xyz(gyro), acc=held(accel), mag=held(mag), frequency={rate}, frame=\"{frame}\").Q
+```
+"
+    )
+}
+
+fn matlab_section(axes: Axes) -> String {
+    let turn = match axes {
+        Axes::NedFrd => "accNED = -acc;                        % the whole accelerometer changes its sign",
+        Axes::EnuFlu => {
+            "gyrNED = gyr .* [1 -1 -1];            % Forward-Left-Up to Forward-Right-Down
+magNED = mag .* [1 -1 -1];
+accNED = -(acc .* [1 -1 -1]);         % the same turn, then the whole accelerometer changes its sign"
+        }
+    };
+    format!(
+        "
+MATLAB (a sensor that the scene lacks has no file):
+
+```matlab
+gyro = readtable('gyro.csv');  gyr = gyro{{:, 2:4}};  t = gyro.t_ns * 1e-9;
+accel = readtable('accel.csv'); acc = accel{{:, 2:4}};
+magnetometer = readtable('mag.csv'); mag = magnetometer{{:, 2:4}};
+truth = readtable('truth.csv'); q = quaternion(truth{{:, 2:5}});
+```
+
+MATLAB's `imuSensor` in NED, and the filters made for it, report gravity minus acceleration: +9.81 at rest, the
+opposite sign of specific force. To convert, negate the whole accelerometer:
+
+```matlab
+{turn}
+```
+"
+    )
+}

@@ -1,0 +1,87 @@
+//! The tables of a dataset: their columns, and a row of each in the scene's axes.
+
+use crate::geometry::{Attitude, Axes, Body, Euler, Vector};
+use crate::motion::Truth;
+use crate::scene::Plan;
+use crate::sensor::{Reading, SensorKind};
+
+/// A column: its name, which ends in its unit, and the unit by itself.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Column {
+    /// Such as `wx_rad_s`.
+    pub name: String,
+    /// Such as `rad/s`; `1` where there is none.
+    pub unit: &'static str,
+}
+
+/// A table: `t_ns`, a whole number, then columns of doubles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Table {
+    /// The stem of its file's name.
+    pub name: &'static str,
+    /// Its columns, `t_ns` first.
+    pub columns: Vec<Column>,
+}
+
+/// The index of the truth's table; the sensors' follow in the plan's order.
+pub(super) const TRUTH: usize = 0;
+
+const QUATERNION: [(&str, &str); 4] = [("qw", "1"), ("qx", "1"), ("qy", "1"), ("qz", "1")];
+const EULER: [(&str, &str); 3] = [("roll_rad", "rad"), ("pitch_rad", "rad"), ("yaw_rad", "rad")];
+
+/// The tables of a plan, the estimate's last where there is one.
+pub(super) fn of(plan: &Plan, estimate: bool) -> Vec<Table> {
+    let mut tables = vec![truth_table()];
+    tables.extend(plan.sensors.iter().map(|sensor| sensor_table(sensor.kind)));
+    if estimate {
+        tables.push(table("estimate", QUATERNION.map(column)));
+    }
+    tables
+}
+
+fn truth_table() -> Table {
+    let sensed = [("w", SensorKind::Gyro), ("f", SensorKind::Accel), ("m", SensorKind::Mag)];
+    let sensed = sensed.into_iter().flat_map(|(letter, kind)| triple(letter, kind));
+    table("truth", QUATERNION.map(column).into_iter().chain(EULER.map(column)).chain(sensed))
+}
+
+fn sensor_table(kind: SensorKind) -> Table {
+    table(kind.name(), ["", "true_", "bias_"].into_iter().flat_map(|prefix| triple(prefix, kind)))
+}
+
+fn table(name: &'static str, columns: impl IntoIterator<Item = Column>) -> Table {
+    Table { name, columns: std::iter::once(column(("t_ns", "ns"))).chain(columns).collect() }
+}
+
+fn column((name, unit): (&str, &'static str)) -> Column {
+    Column { name: name.to_string(), unit }
+}
+
+fn triple(prefix: &str, kind: SensorKind) -> [Column; 3] {
+    ["x", "y", "z"]
+        .map(|axis| Column { name: format!("{prefix}{axis}_{}", kind.column_unit()), unit: kind.unit() })
+}
+
+/// A row of the truth after `t_ns`.
+pub(super) fn truth(axes: Axes, truth: &Truth) -> [f64; 16] {
+    let q = axes.attitude_out(truth.attitude);
+    let Euler { roll, pitch, yaw } = Euler::from_quat(q);
+    let vector = |v| axes.body_out(v).to_array();
+    let ([wx, wy, wz], [fx, fy, fz], [mx, my, mz]) =
+        (vector(truth.rate), vector(truth.force), vector(truth.field));
+    [q.w, q.x, q.y, q.z, roll, pitch, yaw, wx, wy, wz, fx, fy, fz, mx, my, mz]
+}
+
+/// A row of a sensor after `t_ns`.
+pub(super) fn reading(axes: Axes, reading: &Reading) -> [f64; 9] {
+    let vector = |v: Vector<Body>| axes.body_out(v).to_array();
+    let ([x, y, z], [tx, ty, tz], [bx, by, bz]) =
+        (vector(reading.value), vector(reading.truth), vector(reading.bias));
+    [x, y, z, tx, ty, tz, bx, by, bz]
+}
+
+/// A row of the estimate after `t_ns`.
+pub(super) fn quaternion(axes: Axes, attitude: Attitude) -> [f64; 4] {
+    let q = axes.attitude_out(attitude);
+    [q.w, q.x, q.y, q.z]
+}

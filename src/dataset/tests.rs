@@ -1,0 +1,518 @@
+use super::*;
+use crate::geometry::Axes;
+use crate::time::NANOS;
+use std::collections::BTreeMap;
+use std::fs;
+use tempfile::TempDir;
+
+fn plan(scene: &str, sets: &[&str]) -> Plan {
+    Plan::load(scene, &sets.iter().map(|set| set.to_string()).collect::<Vec<_>>()).unwrap()
+}
+
+fn parsed(text: &str) -> Plan {
+    Plan::parse(text, "test", "test", &[]).unwrap()
+}
+
+fn place() -> (TempDir, PathBuf) {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("out");
+    (home, out)
+}
+
+fn write_to(plan: &Plan, end: SimTime, dir: &Path, force: bool) -> Result<Summary, DatasetError> {
+    write(plan, end, dir, Options { force, ..Options::new(&mut |_| {}) })
+}
+
+/// Writes a dataset and gives back its files.
+fn written(plan: &Plan, end: SimTime, block: usize) -> BTreeMap<String, Vec<u8>> {
+    let (_home, out) = place();
+    write_in_blocks(plan, end, &out, Options::new(&mut |_| {}), block).unwrap();
+    contents(&out)
+}
+
+fn contents(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(dir).unwrap().map(|entry| entry.unwrap());
+    entries.map(|entry| (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())).collect()
+}
+
+fn tables_of(files: &BTreeMap<String, Vec<u8>>) -> BTreeMap<&String, &Vec<u8>> {
+    files.iter().filter(|(name, _)| name.ends_with(".csv")).collect()
+}
+
+/// The rows of a CSV file as text, without its header.
+fn rows<'a>(files: &'a BTreeMap<String, Vec<u8>>, name: &str) -> Vec<Vec<&'a str>> {
+    let text = std::str::from_utf8(&files[name]).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').collect()).collect()
+}
+
+const SECOND: SimTime = SimTime(NANOS);
+
+const SEVERAL: &str = r#"
+axes = "enu-flu"
+duration = "0.2 s"
+[[motion]]
+kind = "circle"
+bank = "25 deg"
+speed = "15 m/s"
+duration = "5 s"
+[[force]]
+start = "0.03 s"
+duration = "0.1 s"
+acceleration = "[0, 1.5, 0.3] m/s^2"
+[gyro]
+rate = "1125 Hz"
+sampling = "average"
+noise_std = { uniform = ["0.001 rad/s", "0.003 rad/s"] }
+bias = { normal = ["0 deg/s", "1 deg/s"] }
+bias_random_walk = "20 deg/h/rts"
+[accel]
+rate = "400/3 Hz"
+phase = "1.5 ms"
+range = "10 m/s^2"
+bias_std = "3 mg"
+[mag]
+rate = "70 Hz"
+noise_density = "0.1 uT/√Hz"
+"#;
+
+#[test]
+fn files_and_columns_are_exactly_as_specified() {
+    let (_home, out) = place();
+    let plan = plan("table-1", &[]);
+    let estimates = [(SimTime(5), Attitude::IDENTITY)];
+    write(&plan, SimTime(NANOS / 10), &out, Options { estimates: &estimates, ..Options::new(&mut |_| {}) })
+        .unwrap();
+    let files = contents(&out);
+    let names: Vec<_> = files.keys().map(String::as_str).collect();
+    let expected = [
+        "README.md",
+        "accel.csv",
+        "estimate.csv",
+        "gyro.csv",
+        "mag.csv",
+        "manifest.json",
+        "scene.toml",
+        "truth.csv",
+    ];
+    assert_eq!(names, expected);
+    for (name, header) in [
+        (
+            "truth.csv",
+            "t_ns,qw,qx,qy,qz,roll_rad,pitch_rad,yaw_rad,wx_rad_s,wy_rad_s,wz_rad_s,fx_m_s2,fy_m_s2,fz_m_s2,mx_ut,my_ut,mz_ut",
+        ),
+        (
+            "gyro.csv",
+            "t_ns,x_rad_s,y_rad_s,z_rad_s,true_x_rad_s,true_y_rad_s,true_z_rad_s,bias_x_rad_s,bias_y_rad_s,bias_z_rad_s",
+        ),
+        (
+            "accel.csv",
+            "t_ns,x_m_s2,y_m_s2,z_m_s2,true_x_m_s2,true_y_m_s2,true_z_m_s2,bias_x_m_s2,bias_y_m_s2,bias_z_m_s2",
+        ),
+        ("mag.csv", "t_ns,x_ut,y_ut,z_ut,true_x_ut,true_y_ut,true_z_ut,bias_x_ut,bias_y_ut,bias_z_ut"),
+        ("estimate.csv", "t_ns,qw,qx,qy,qz"),
+    ] {
+        let text = std::str::from_utf8(&files[name]).unwrap();
+        assert_eq!(text.lines().next(), Some(header));
+        let width = header.split(',').count();
+        assert!(text.ends_with('\n') && text.lines().all(|line| line.split(',').count() == width), "{name}");
+    }
+    let [w, x, y, z] = rows(&files, "estimate.csv")[0][1..] else { panic!() };
+    let north: Vec<f64> = [w, x, y, z].iter().map(|text| text.parse().unwrap()).collect();
+    assert!(
+        (north[0].abs() - 0.5f64.sqrt()).abs() < 1e-15 && north[0] == north[3],
+        "north is yawed 90° in ENU"
+    );
+}
+
+#[test]
+fn every_tick_has_its_row_and_the_truth_has_their_union() {
+    let plan = parsed(SEVERAL);
+    let files = written(&plan, plan.duration, player::BLOCK);
+    let mut union = std::collections::BTreeSet::new();
+    for sensor in &plan.sensors {
+        let rows = rows(&files, &format!("{}.csv", sensor.kind));
+        assert_eq!(
+            rows.len() as u64,
+            sensor.rate.ticks_before(sensor.phase, plan.duration),
+            "{}",
+            sensor.kind
+        );
+        for (k, row) in rows.iter().enumerate() {
+            let t: i64 = row[0].parse().unwrap();
+            assert_eq!(SimTime(t), sensor.phase + sensor.rate.tick(k as u64));
+            union.insert(t);
+        }
+    }
+    let times: Vec<i64> = rows(&files, "truth.csv").iter().map(|row| row[0].parse().unwrap()).collect();
+    assert_eq!(times, union.into_iter().collect::<Vec<_>>());
+}
+
+#[test]
+fn a_row_holds_the_bits_that_were_played() {
+    let plan = parsed(SEVERAL);
+    let files = written(&plan, plan.duration, player::BLOCK);
+    let mut truths = rows(&files, "truth.csv").into_iter();
+    let mut sensors: Vec<_> =
+        plan.sensors.iter().map(|sensor| rows(&files, &format!("{}.csv", sensor.kind)).into_iter()).collect();
+    let same = |text: &[&str], values: &[f64]| {
+        let read: Vec<u64> = text[1..].iter().map(|text| text.parse::<f64>().unwrap().to_bits()).collect();
+        assert_eq!(read, values.iter().map(|value| (value + 0.0).to_bits()).collect::<Vec<_>>());
+    };
+    Player::new(&plan, plan.duration, 3)
+        .play(|moment| {
+            same(&truths.next().unwrap(), &table::truth(plan.axes, moment.truth));
+            for reading in moment.readings {
+                same(&sensors[reading.sensor].next().unwrap(), &table::reading(plan.axes, reading));
+            }
+            Ok::<(), std::convert::Infallible>(())
+        })
+        .unwrap();
+    assert!(files.values().all(|file| !std::str::from_utf8(file).unwrap().contains(",-0,")));
+}
+
+#[test]
+fn the_block_size_changes_no_byte() {
+    let mut plans =
+        vec![parsed(SEVERAL), plan("manoeuvre", &["duration=0.3 s"]), plan("mpu-9250", &["duration=0.3 s"])];
+    for plan in &mut plans {
+        let whole = written(plan, plan.duration, 256);
+        for block in [1, 7] {
+            assert!(written(plan, plan.duration, block) == whole, "{}: blocks of {block}", plan.name);
+        }
+    }
+}
+
+#[test]
+fn playing_the_written_scene_gives_the_same_bytes() {
+    let short = ["duration=0.4 s"];
+    let all = crate::scene::builtin::SCENES.map(|(name, _)| plan(name, &short));
+    let uniform = plan(
+        "table-1",
+        &["gyro.noise_variance={ uniform = [\"1e-6 rad^2/s^2\", \"9e-6 rad^2/s^2\"] }", short[0]],
+    );
+    let mounted = plan(
+        "mpu-9250",
+        &["gyro.mount='dlf'", "accel.range='2 g'", "mag.noise_density='0.1 uT/rtHz'", short[0]],
+    );
+    let overridden = plan(
+        "mpu-9250",
+        &["axes='enu-flu'", "gyro.mount=[0.5, 0.5, 0.5, 0.5]", "start.quaternion=[0.6, 0, 0.8, 0]", short[0]],
+    );
+    for plan in all.into_iter().chain([uniform, mounted, overridden, parsed(SEVERAL)]) {
+        let first = written(&plan, plan.duration, player::BLOCK);
+        let again =
+            Plan::parse(std::str::from_utf8(&first["scene.toml"]).unwrap(), "scene.toml", "scene", &[]);
+        let again = again.unwrap_or_else(|error| panic!("{}: {error}\n{}", plan.name, plan.resolved));
+        let second = written(&again, again.duration, player::BLOCK);
+        assert!(tables_of(&second) == tables_of(&first), "{}: {}", plan.name, plan.resolved);
+        assert_eq!(
+            second["scene.toml"], first["scene.toml"],
+            "{}: resolving twice is resolving once",
+            plan.name
+        );
+    }
+}
+
+#[test]
+fn the_written_scene_ends_where_the_run_ended() {
+    let plan = plan("table-1", &[]);
+    let files = written(&plan, SimTime(NANOS / 8), player::BLOCK);
+    let again = parsed(std::str::from_utf8(&files["scene.toml"]).unwrap());
+    assert_eq!(again.duration, SimTime(NANOS / 8));
+    assert!(tables_of(&written(&again, again.duration, player::BLOCK)) == tables_of(&files));
+}
+
+#[test]
+fn adding_a_sensor_changes_no_other_sensors_file() {
+    let alone = parsed(&SEVERAL[..SEVERAL.find("[accel]").unwrap()]);
+    let (few, all) =
+        (written(&alone, SECOND, player::BLOCK), written(&parsed(SEVERAL), SECOND, player::BLOCK));
+    assert_eq!(few["gyro.csv"], all["gyro.csv"]);
+    assert!(!few.contains_key("accel.csv") && all.contains_key("accel.csv"));
+}
+
+#[test]
+fn the_accelerometer_of_table_1_is_truth_plus_bias_in_every_row() {
+    let plan = plan("table-1", &[]);
+    let files = written(&plan, SECOND + SECOND + SECOND, player::BLOCK);
+    let rows = rows(&files, "accel.csv");
+    assert_eq!(rows.len(), 3000);
+    for row in rows {
+        let x: Vec<f64> = row.iter().map(|text| text.parse().unwrap()).collect();
+        for axis in 1..4 {
+            assert_eq!(x[axis], x[axis + 3] + x[axis + 6], "{row:?}");
+        }
+        assert_eq!(&row[7..], ["0.0007", "0.00033", "-0.00404"]);
+    }
+}
+
+#[test]
+fn at_rest_the_accelerometer_reads_what_the_readme_says() {
+    for (axes, says) in [(Axes::NedFrd, "[0, 0, -9.80665]"), (Axes::EnuFlu, "[0, 0, 9.80665]")] {
+        let plan = parsed(&format!("axes = \"{axes}\"\nduration = \"10 ms\"\n[accel]\nrate = \"1 kHz\"\n"));
+        let files = written(&plan, plan.duration, player::BLOCK);
+        let readme = String::from_utf8(files["README.md"].clone()).unwrap();
+        assert!(readme.contains(&format!("the accelerometer reads `{says}`")), "{readme}");
+        for row in rows(&files, "accel.csv") {
+            assert_eq!(format!("[{}]", row[1..4].join(", ")), says);
+        }
+        let first = &rows(&files, "truth.csv")[0];
+        assert_eq!(first[1..8], ["1", "0", "0", "0", "0", "0", "0"], "{axes}: level, facing the first axis");
+        assert!(!files.contains_key("gyro.csv"));
+    }
+}
+
+#[test]
+fn checksums_rows_and_columns_are_those_of_the_files() {
+    let (_home, out) = place();
+    let plan = parsed(SEVERAL);
+    let summary = write_to(&plan, plan.duration, &out, false).unwrap();
+    let json: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("manifest.json")).unwrap()).unwrap();
+    assert_eq!(
+        (&json["complete"], &json["axes"], &json["seed"]),
+        (&true.into(), &"enu-flu".into(), &0.into())
+    );
+    let mut rows = 0;
+    for file in json["files"].as_array().unwrap() {
+        let bytes = fs::read(out.join(file["name"].as_str().unwrap())).unwrap();
+        let text = std::str::from_utf8(&bytes).unwrap();
+        let columns: Vec<_> =
+            file["columns"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
+        assert_eq!(text.lines().next().unwrap(), columns.join(","));
+        assert_eq!(text.lines().count() as u64 - 1, file["rows"].as_u64().unwrap());
+        assert_eq!(sha256(&bytes), file["sha256"].as_str().unwrap());
+        rows += file["rows"].as_u64().unwrap();
+    }
+    assert_eq!(rows, summary.rows);
+    for file in json["other_files"].as_array().unwrap() {
+        assert_eq!(
+            sha256(&fs::read(out.join(file["name"].as_str().unwrap())).unwrap()),
+            file["sha256"].as_str().unwrap()
+        );
+    }
+    let drawn: Vec<_> =
+        json["drawn"].as_array().unwrap().iter().map(|drawn| drawn["key"].as_str().unwrap()).collect();
+    assert_eq!(drawn, ["gyro.bias", "gyro.noise_std"]);
+    assert_eq!(json["sensors"][0]["sampling"], "average");
+    // On a turn of 25° of bank specific force grows to 10.8 m/s², beyond the range; at first it does not.
+    let clipped = json["sensors"][1]["clipped"].as_u64().unwrap();
+    assert_eq!(summary.clipped, [0, clipped, 0]);
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    use sha2::Digest;
+    sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[test]
+fn clipped_samples_are_counted() {
+    let plan = parsed("duration = \"1 s\"\n[accel]\nrate = \"50 Hz\"\nrange = \"5 m/s^2\"\n");
+    let (_home, out) = place();
+    assert_eq!(write_to(&plan, plan.duration, &out, false).unwrap().clipped, [50]);
+}
+
+#[test]
+fn a_folder_that_holds_something_is_refused_and_force_replaces_its_dataset_alone() {
+    let (_home, out) = place();
+    let (long, short) = (parsed(SEVERAL), parsed("duration = \"10 ms\"\n[mag]\nrate = \"1 kHz\"\n"));
+    fs::create_dir(&out).unwrap();
+    may_write(&out, false).unwrap();
+    let extra = [("gyro.svg".to_string(), b"<svg/>".to_vec())];
+    write(&long, long.duration, &out, Options { extra: &extra, ..Options::new(&mut |_| {}) }).unwrap();
+    assert_eq!(fs::read(out.join("gyro.svg")).unwrap(), b"<svg/>");
+    let before = contents(&out);
+    let refusal = write_to(&short, short.duration, &out, false).unwrap_err().to_string();
+    assert_eq!(may_write(&out, false).unwrap_err().to_string(), refusal);
+    assert!(refusal.contains("already holds files") && refusal.contains("--force"), "{refusal}");
+    assert!(contents(&out) == before);
+
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    write_to(&short, short.duration, &out, true).unwrap();
+    let names: Vec<_> = contents(&out).into_keys().collect();
+    assert_eq!(names, ["README.md", "mag.csv", "manifest.json", "notes.txt", "scene.toml", "truth.csv"]);
+}
+
+#[test]
+fn a_run_that_stops_leaves_what_was_there() {
+    let (home, out) = place();
+    let plan = plan("table-1", &[]);
+    let stop = AtomicBool::new(false);
+    let mut progress = |_| stop.store(true, Ordering::Relaxed);
+    let stopped =
+        write(&plan, plan.duration, &out, Options { stop: Some(&stop), ..Options::new(&mut progress) });
+    assert!(matches!(stopped, Err(DatasetError::Stopped)));
+    assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0, "not even a hidden folder");
+
+    write_to(&plan, SimTime(NANOS / 100), &out, false).unwrap();
+    let before = contents(&out);
+    let stopped = write(
+        &plan,
+        plan.duration,
+        &out,
+        Options { force: true, stop: Some(&stop), ..Options::new(&mut |_| {}) },
+    );
+    assert!(stopped.is_err() && contents(&out) == before);
+}
+
+#[test]
+fn while_it_is_written_nothing_stands_under_the_name() {
+    let (_home, out) = place();
+    let plan = plan("table-1", &[]);
+    let (mut seen, mut last) = (0, SimTime::ZERO);
+    let mut progress = |t| {
+        assert!(!out.exists() && t > last);
+        (seen, last) = (seen + 1, t);
+    };
+    write(&plan, SECOND, &out, Options::new(&mut progress)).unwrap();
+    assert!(out.join("manifest.json").exists() && seen > 1 && last < SECOND);
+}
+
+#[test]
+fn errors_name_the_path_and_the_reason() {
+    let (home, out) = place();
+    let plan = plan("table-1", &[]);
+    fs::write(&out, "a file").unwrap();
+    for (dir, says) in [
+        (out.clone(), "is not a folder"),
+        (out.join("deeper"), "ot a directory"),
+        ("/proc/here".into(), "cannot create"),
+    ] {
+        let message = write_to(&plan, SECOND, &dir, true).unwrap_err().to_string();
+        assert!(message.contains(says) && message.contains(&*dir.to_string_lossy()), "{message}");
+    }
+    let endless = write_to(&plan, SimTime::FOREVER, &home.path().join("new"), false).unwrap_err();
+    assert!(matches!(endless, DatasetError::Endless));
+}
+
+#[test]
+fn the_quaternions_sign_is_continuous_and_starts_as_given() {
+    for (name, _) in crate::scene::builtin::SCENES {
+        let plan = plan(name, &[]);
+        let at = |ms: i64| {
+            let [w, x, y, z, ..] = table::truth(plan.axes, &plan.trajectory.at(SimTime(ms * NANOS / 1000)));
+            glam::DQuat::from_xyzw(x, y, z, w)
+        };
+        let mut last = at(0);
+        for ms in 1..plan.duration.0 * 1000 / NANOS {
+            let next = at(ms);
+            assert!(last.dot(next) > 0.99 && (next.length() - 1.0).abs() < 1e-14, "{name} at {ms} ms");
+            last = next;
+        }
+    }
+    for sign in [1.0, -1.0] {
+        for axes in Axes::NAMES {
+            let start = [0.5, -0.5, 0.1, 0.7].map(|x: f64| x * sign);
+            let plan = parsed(&format!(
+                "axes = \"{axes}\"\nduration = \"1 s\"\n[start]\nquaternion = {start:?}\n[mag]\nrate = \"1 Hz\"\n"
+            ));
+            let row = table::truth(plan.axes, &plan.trajectory.at(SimTime::ZERO));
+            assert!(
+                row.iter().zip(start).all(|(ours, given)| (ours - given).abs() < 1e-15),
+                "{axes}: {row:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_dataset_reads_back_as_it_was_true() {
+    for axes in Axes::NAMES {
+        let (_home, out) = place();
+        let plan = parsed(&SEVERAL.replace("enu-flu", axes));
+        write_to(&plan, plan.duration, &out, false).unwrap();
+        for path in [out.clone(), out.join("truth.csv")] {
+            let recorded = read::truth(&path).unwrap();
+            assert_eq!(recorded.axes, plan.axes);
+            for (t, attitude) in &recorded.attitudes {
+                assert!(attitude.angle_to(plan.trajectory.at(*t).attitude) < 1e-15);
+            }
+        }
+        let mut readings = read::readings(&out, crate::sensor::SensorKind::Accel).unwrap().into_iter();
+        Player::new(&plan, plan.duration, 5)
+            .play(|moment| {
+                for reading in moment.readings.iter().filter(|reading| reading.sensor == 1) {
+                    assert_eq!(readings.next(), Some((moment.t, reading.value)));
+                }
+                Ok::<(), std::convert::Infallible>(())
+            })
+            .unwrap();
+        assert_eq!(readings.next(), None);
+    }
+}
+
+#[test]
+fn what_cannot_be_read_is_placed() {
+    let (home, out) = place();
+    let plan = plan("table-1", &[]);
+    write_to(&plan, SimTime(NANOS / 100), &out, false).unwrap();
+    let file = out.join("truth.csv");
+    let text = fs::read_to_string(&file).unwrap();
+    let third = text.lines().nth(2).unwrap();
+    for (bad, says) in [
+        (text.replacen("qx", "other", 1), "truth.csv:1: has no column `qx`"),
+        (
+            text.replacen(third, &third.replacen("1000000,1,", "1000000,one,", 1), 1),
+            "truth.csv:3, column qw: `one` is no number",
+        ),
+        (
+            text.replacen(third, &third.replacen("1000000,1,", "1000000,2,", 1), 1),
+            "truth.csv:3, column qw..qz",
+        ),
+        (
+            text.replacen(third, &third.replacen("1000000,", "0,", 1), 1),
+            "truth.csv:3, column t_ns: 0 is not after 0",
+        ),
+        (text.replacen(third, &third.replacen("1000000,", "1.5,", 1), 1), "`1.5` is no whole number"),
+        (text.replacen(third, "5,5", 1), "truth.csv:3: the row has 2 columns, the header 17"),
+    ] {
+        fs::write(&file, bad).unwrap();
+        let message = read::truth(&out).unwrap_err().to_string();
+        assert!(message.contains(says), "{message}\nshould say {says}");
+    }
+    fs::write(&file, &text).unwrap();
+    fs::remove_file(out.join("manifest.json")).unwrap();
+    let message = read::truth(&file).unwrap_err().to_string();
+    assert!(message.contains("axes") && message.contains("manifest.json"), "{message}");
+    assert!(read::truth(&home.path().join("none.csv")).unwrap_err().to_string().contains("none.csv"));
+}
+
+#[test]
+fn the_figures_are_the_papers_four() {
+    let plan = plan("table-1", &[]);
+    let figures = figures(&plan, SimTime(3 * NANOS));
+    let stems: Vec<_> =
+        figures.iter().map(|figure| (figure.file_stem, figure.series.len(), figure.wraps)).collect();
+    assert_eq!(stems, [("gyro", 6, false), ("accel", 6, false), ("mag", 6, false), ("angles", 3, true)]);
+    let (t, rate) = figures[0].series[3].points[2500];
+    assert!(
+        (t - 2.5).abs() < 1e-12 && (rate - 20.0).abs() < 1e-12,
+        "case 2 rolls at 20 deg/s from 2 s on: {rate}"
+    );
+    let (t, roll) = *figures[3].series[0].points.last().unwrap();
+    assert!((t - 2.999).abs() < 1e-12 && (roll - 20.0 * 0.999).abs() < 1e-9, "{roll}");
+    assert!(figures[0].series[3].is_truth && !figures[0].series[0].is_truth);
+    assert_eq!(figures[2].series[0].points.len(), 300);
+    assert!((figures[1].series[5].points[0].1 - 9.80665).abs() < 1e-12);
+}
+
+#[test]
+fn the_readme_tells_what_a_reader_would_ask() {
+    let plan = plan("mpu-9250", &[]);
+    let readme = String::from_utf8(written(&plan, SimTime(NANOS / 100), 16)["README.md"].clone()).unwrap();
+    for said in [
+        "Hamilton",
+        "declination",
+        "numpy",
+        "```matlab",
+        "ahrs",
+        "imuSensor",
+        "Drawn once",
+        "gyro.bias",
+        "point",
+        "MPU-9250",
+        "nose up",
+    ] {
+        assert!(readme.contains(said), "{said} is missing from\n{readme}");
+    }
+}
