@@ -11,11 +11,13 @@
 mod answers;
 mod command;
 mod control;
+mod interrupt;
 mod pacer;
 mod producer;
 mod tally;
 
 pub use control::run;
+pub use interrupt::on_interrupt;
 pub use pacer::Speed;
 
 use crate::geometry::Attitude;

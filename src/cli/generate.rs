@@ -1,10 +1,14 @@
 //! `ratetable generate`: a dataset.
 
+use super::progress::Bar;
 use super::{Refusal, Verdict};
+use crate::dataset::{self, FORMATS, Figure, Format, Options, Summary};
+use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
 use crate::report::Report;
-use crate::scene::Plan;
-use crate::session::Outcome;
+use crate::scene::{Plan, nearest};
+use crate::session::{Outcome, on_interrupt};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -13,10 +17,13 @@ pub struct Arguments {
     /// The folder to make
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// In which formats, separated by commas
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',', default_value = "csv", value_parser = format)]
+    format: Vec<&'static Format>,
     /// Override one key of the scene, such as gyro.rate='8 kHz'
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Draw the paper's four figures as SVG too
+    /// Draw the sensors and the reference angles as SVG too
     #[arg(long)]
     figures: bool,
     /// Replace the folder if there is one
@@ -24,10 +31,101 @@ pub struct Arguments {
     force: bool,
 }
 
-pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
-    let _ = (&arguments.scene, &arguments.out, &arguments.set, arguments.figures, arguments.force);
-    Err(Refusal("merging".into()))
+fn format(name: &str) -> Result<&'static Format, String> {
+    Format::from_name(name).ok_or_else(|| {
+        let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
+        let near = nearest(name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
+        format!("`{name}` is no format of this version ({}){near}", names.join(", "))
+    })
 }
 
-pub fn may_write(_dir: &Path, _force: bool) -> Result<(), Refusal> { Ok(()) }
-pub fn after_run(_: &Plan, _: &Outcome, _: &Report, _: &Path, _: bool) -> Result<(), Refusal> { Ok(()) }
+pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    let plan = Plan::load(&arguments.scene, &arguments.set)?;
+    dataset::may_write(&arguments.out, arguments.force)?;
+    let started = Instant::now();
+    let bar = Bar::new(plan.duration);
+    let stop = on_interrupt();
+    let figures = if arguments.figures { figures(&plan) } else { Vec::new() };
+    let mut progress = |t| bar.offline(t);
+    let options = Options {
+        force: arguments.force,
+        formats: arguments.format.clone(),
+        extra: &figures,
+        stop: Some(&stop),
+        ..Options::new(&mut progress)
+    };
+    let written = dataset::write(&plan, plan.duration, &arguments.out, options);
+    bar.clear();
+    let summary = written?;
+    let seconds = started.elapsed().as_secs_f64();
+    eprintln!("{}: {} of scene, {} rows in {seconds:.2} s", summary.folder.display(), plan.duration, summary.rows);
+    say_clipped(&plan, &summary);
+    Ok(Verdict::Fine)
+}
+
+fn say_clipped(plan: &Plan, summary: &Summary) {
+    for (sensor, clipped) in plan.sensors.iter().zip(&summary.clipped).filter(|(_, clipped)| **clipped > 0) {
+        eprintln!("notice: {clipped} {} samples were beyond the range and are clipped", sensor.kind);
+    }
+}
+
+/// Every figure as a file.
+fn figures(plan: &Plan) -> Vec<(String, Vec<u8>)> {
+    let figures = dataset::figures(plan, plan.duration);
+    figures.iter().map(|figure| (format!("{}.svg", figure.file_stem), draw(plan, figure).into_bytes())).collect()
+}
+
+/// Readings one under another with the truth over each; reference angles together in one panel.
+fn draw(plan: &Plan, figure: &Figure) -> String {
+    let columns: Vec<(Vec<f64>, Vec<f64>)> =
+        figure.series.iter().map(|series| series.points.iter().copied().unzip()).collect();
+    let readings: Vec<_> = (0..figure.series.len()).filter(|&i| !figure.series[i].is_truth).collect();
+    let line = |i: usize| Line {
+        name: figure.series[i].label,
+        x: &columns[i].0,
+        y: &columns[i].1,
+        kind: if figure.series[i].is_truth && !readings.is_empty() { LineKind::Truth } else { LineKind::Value },
+    };
+    let stacked = if !readings.is_empty() {
+        let pair = |(k, &i): (usize, &usize)| panel(figure, figure.series[i].label, vec![line(i), line(readings.len() + k)]);
+        readings.iter().enumerate().map(pair).collect()
+    } else {
+        vec![panel(figure, "", (0..figure.series.len()).map(line).collect())]
+    };
+    panels(&Panels {
+        title: figure.title.to_string(),
+        subtitle: format!("{}, {} axes, seed {}", plan.name, plan.axes, plan.seed),
+        x_label: "time (s)".into(),
+        panels: stacked,
+    })
+}
+
+fn panel<'a>(figure: &Figure, title: &str, lines: Vec<Line<'a>>) -> Panel<'a> {
+    Panel {
+        title: title.to_string(),
+        y_label: figure.y_label.to_string(),
+        lines,
+        wrap: figure.wraps.then_some(360.0),
+        log_y: false,
+    }
+}
+
+/// Asks before a run whether its folder may be written.
+pub fn may_write(dir: &Path, force: bool) -> Result<(), Refusal> {
+    Ok(dataset::may_write(dir, force)?)
+}
+
+/// The dataset of what a run played, with the estimates that came back and the run's report.
+pub fn after_run(plan: &Plan, outcome: &Outcome, report: &Report, dir: &Path, force: bool) -> Result<(), Refusal> {
+    let report = serde_json::to_string_pretty(report)? + "\n";
+    let mut progress = |_| {};
+    let options = Options {
+        force,
+        estimates: &outcome.estimates,
+        extra: &[("report.json".to_string(), report.into_bytes())],
+        ..Options::new(&mut progress)
+    };
+    let summary = dataset::write(plan, outcome.played, dir, options)?;
+    eprintln!("{}: {} rows", summary.folder.display(), summary.rows);
+    Ok(())
+}

@@ -7,6 +7,7 @@ use super::table::Table;
 use crate::time::SimTime;
 
 /// A format: its name and how to begin a dataset in it.
+#[derive(Debug)]
 pub struct Format {
     /// As `--format` and the manifest spell it.
     pub name: &'static str,

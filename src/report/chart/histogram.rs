@@ -135,7 +135,8 @@ fn y_axis(input: &Histogram, traces: &[Vec<(f64, f64)>]) -> Axis {
     let ends = match (input.log_y, input.shape) {
         (false, Shape::Bins) => {
             let shares = traces.iter().flatten().map(|p| p.1);
-            vec![0.0, 1.06 * shares.fold(0.0, f64::max)]
+            let highest = shares.fold(0.0, f64::max);
+            vec![0.0, if highest > 0.0 { 1.06 * highest } else { 100.0 }]
         }
         (false, _) => vec![0.0, 100.0],
         (true, Shape::Bins) => vec![],

@@ -8,16 +8,15 @@
 //!
 //! | function | shows |
 //! |---|---|
-//! | [`panels`](panels()) | stacked time series with a common time axis |
-//! | [`histogram`](histogram()) | distributions: histograms, the share below or above a value |
-//! | [`loglog`](loglog()) | small multiples of cost against error, with the front of the cheapest |
-//! | [`grid`](grid()) | a table of verdicts |
-//! | [`curves`](curves()) | measured curves with their bands, and theory |
+//! | `panels` | stacked time series with a common time axis |
+//! | `histogram` | distributions: histograms, the share below or above a value |
+//! | `loglog` | small multiples of cost against error, with the front of the cheapest |
+//! | `grid` | a table of verdicts |
+//! | `curves` | measured curves with their bands, and theory |
 //!
-//! The drawing is `plotters`' SVG backend, in quarters of a pixel. `kuva`, tried on the same
-//! pictures, has no table of verdicts, lets points and tick labels leave their panel, and brings
-//! no labels at a line's end; `plotters` gives the control that these pictures need, without
-//! reading any system font.
+//! The drawing is `plotters`' SVG backend, in quarters of a pixel: it reads no system font, and
+//! leaves every coordinate to us. `kuva` 0.6, tried on the same pictures, has no table of verdicts
+//! and no names at the ends of lines, and let points and tick labels leave their panel.
 
 mod axis;
 mod canvas;

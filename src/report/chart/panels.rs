@@ -230,9 +230,15 @@ impl Plan<'_> {
         let place = |run: Vec<(f64, f64)>| run.into_iter().map(|p| self.frame.at(p)).collect();
         let placed: Vec<Vec<(f64, f64)>> =
             runs(line.x, line.y, self.panel.wrap).into_iter().map(place).collect();
-        for run in thin_runs(&placed, self.frame.width) {
+        let runs = thin_runs(&placed, self.frame.width);
+        // A value alone is a dot; among many, a dash as long as a pixel column.
+        let lone = if runs.len() <= 100 { 2.5 } else { 0.5 };
+        for run in runs {
             match run.as_slice() {
-                &[(x, y)] => canvas.line((x - 1.0, y), (x + 1.0, y), &Pen { width: 2.0, ..*pen }),
+                &[(x, y)] => {
+                    let pen = Pen { width: pen.width.max(2.0 * lone), ..*pen };
+                    canvas.line((x - lone, y), (x + lone, y), &pen);
+                }
                 run => canvas.path(run, pen),
             }
         }

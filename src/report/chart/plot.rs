@@ -247,7 +247,7 @@ impl EndLabel {
         let places = spread(&wanted, LEADING - 1.0, top, frame.bottom() + 4.0);
         for (label, y) in labels.iter().zip(places) {
             let x = frame.right() + 18.0;
-            let leader = Pen::new(label.color, 0.75).alpha(0.55);
+            let leader = Pen::new(FAINT, 0.5).alpha(0.6);
             let path = [label.end, (frame.right() + 4.0, label.end.1), (x - 3.0, y)];
             let direct = label.end.0 >= frame.right() - 1.0;
             canvas.path(if direct { &path[1..] } else { &path }, &leader);
