@@ -48,8 +48,18 @@ enum Verdict {
 struct Refusal(String);
 
 impl<E: std::error::Error> From<E> for Refusal {
+    /// The error and its causes, each once.
     fn from(error: E) -> Refusal {
-        Refusal(error.to_string())
+        let mut message = error.to_string();
+        let mut cause = error.source();
+        while let Some(error) = cause {
+            let text = error.to_string();
+            if !message.contains(&text) {
+                message += &format!(": {text}");
+            }
+            cause = error.source();
+        }
+        Refusal(message)
     }
 }
 

@@ -45,8 +45,10 @@ pub struct Host {
     pub kernel: String,
     /// Processors this process may use.
     pub cpus: usize,
-    /// Whether the pacing thread had real-time priority and the process was locked in memory.
+    /// Whether the pacing thread had real-time priority.
     pub realtime: bool,
+    /// Whether the process was locked in memory.
+    pub memory_locked: bool,
     /// Which clock paced it.
     pub clock: &'static str,
 }
@@ -58,7 +60,7 @@ pub struct SensorReport {
     pub name: String,
     /// Requested, Hz.
     pub rate_hz: f64,
-    /// Delivered: (n − 1)/(t_last − t_first), Hz.
+    /// Delivered: (n − 1)/(t_last − t_first), Hz; absent where nothing is paced, as are lateness and intervals.
     pub sent_hz: Option<f64>,
     /// The same at the other end, where known, Hz.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,7 +73,7 @@ pub struct SensorReport {
     pub dropped: u64,
     /// Samples still on their way when the run was stopped.
     pub queued: u64,
-    /// The moment just before the write call minus due, µs; absent where nothing is paced.
+    /// The moment just before the write call minus due, µs.
     pub late_us: Option<Late>,
     /// Between two packets of this sensor, µs.
     pub interval_us: Option<Interval>,

@@ -9,6 +9,7 @@
 
 pub mod builtin;
 pub mod document;
+mod fixed_keys;
 mod output;
 mod section;
 mod sensors;
@@ -16,6 +17,7 @@ mod suggest;
 mod vehicle;
 
 pub use document::Place;
+pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
 pub use output::{Destination, Output};
 pub use section::Drawn;
 pub use sensors::part_sources;

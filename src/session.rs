@@ -85,8 +85,10 @@ pub struct Outcome {
     pub played: SimTime,
     /// Whether it was stopped by the user.
     pub interrupted: bool,
-    /// Whether the pacing thread had real-time priority and the process was locked in memory.
+    /// Whether the pacing thread had real-time priority.
     pub realtime: bool,
+    /// Whether the process was locked in memory.
+    pub memory_locked: bool,
     /// Each sensor's counts, rates and lateness.
     pub sensors: Vec<SensorReport>,
     /// Each link's counts.

@@ -1,6 +1,7 @@
 //! The other end of the demonstration: a driver and an AHRS that open the pty by its path, as firmware would.
 
 use crate::earth;
+use crate::os;
 use crate::report::SensorReport;
 use crate::scene::Plan;
 use ratetable_firmware_host_tests::board::{Board, Options, Step};
@@ -13,6 +14,8 @@ use std::time::{Duration, Instant};
 
 /// How often it answers with its attitude, in sample time.
 const ANSWER_EVERY_US: u64 = 20_000;
+/// Below that of the pacing thread.
+const PRIORITY: i32 = 40;
 /// A turn of its loop.
 const TURN: Duration = Duration::from_millis(20);
 
@@ -56,6 +59,8 @@ impl Firmware {
 }
 
 fn receive(path: &str, options: Options, stop: &AtomicBool) -> io::Result<Received> {
+    // A firmware has a processor of its own: where it is allowed, this one goes before ordinary work.
+    let _ = os::set_realtime_priority(PRIORITY);
     let mut board = Board::open(path, Protocol::Mpu, options)?;
     let mut received = Received::default();
     while !stop.load(Ordering::Relaxed) {

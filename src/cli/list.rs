@@ -1,10 +1,10 @@
 //! `ratetable list`: what there is.
 
 use super::{Refusal, Verdict, say};
-use crate::keys::Takes;
+use crate::keys::{Key, Takes};
 use crate::report::table;
 use crate::scene::{self, builtin};
-use crate::sensor::parts;
+use crate::sensor::{self, SensorKind, parts};
 use crate::wire::Protocol;
 use crate::{link, motion};
 use clap::ValueEnum;
@@ -23,6 +23,8 @@ enum What {
     Parts,
     /// Kinds of motion and their keys
     Motions,
+    /// Every key of a scene file
+    Keys,
     /// What packets look like
     Protocols,
     /// Where packets go
@@ -48,25 +50,21 @@ pub fn list(arguments: &Arguments) -> Result<Verdict, Refusal> {
 fn body(what: What) -> Result<String, Refusal> {
     Ok(match what {
         What::Scenes => {
-            table(&["name", "about"], &builtin::SCENES.map(|(name, text)| vec![name.into(), left(builtin::about(text))]))
+            table(&["name", "about"], &builtin::SCENES.map(|(name, text)| vec![name.into(), builtin::about(text).into()]))
         }
         What::Parts => parts()?,
         What::Motions => motions(),
+        What::Keys => keys(),
         What::Protocols => {
-            let row = |protocol: Protocol| vec![protocol.name().into(), left(protocol.about())];
+            let row = |protocol: Protocol| vec![protocol.name().into(), protocol.about().into()];
             table(&["name", "about"], &Protocol::ALL.map(row))
         }
         What::Links => {
-            let row = |scheme: &link::Scheme| vec![scheme.spelling.into(), left(scheme.about)];
+            let row = |scheme: &link::Scheme| vec![scheme.spelling.into(), scheme.about.into()];
             table(&["spelled", "about"], &link::SCHEMES.iter().map(row).collect::<Vec<_>>())
         }
         What::Ports => ports(),
     })
-}
-
-/// The last column of a table of words is not to be pushed to the right.
-fn left(text: &str) -> String {
-    text.to_string()
 }
 
 fn parts() -> Result<String, Refusal> {
@@ -80,21 +78,46 @@ fn parts() -> Result<String, Refusal> {
     Ok(text)
 }
 
+/// Every table and key of a scene.
+fn keys() -> String {
+    let mut text = String::new();
+    let mut table = None;
+    for (of, key, about) in scene::FIXED_KEYS {
+        if table != Some(of) {
+            let name = if of.is_empty() { "(the scene itself)".to_string() } else { format!("[{of}]") };
+            text += &format!("{name}\n");
+            table = Some(of);
+        }
+        text += &format!("  {key}: {about}\n");
+    }
+    for sensor in SensorKind::ALL {
+        text += &format!("[{sensor}]\n");
+        for (key, about) in scene::SENSOR_KEYS {
+            text += &format!("  {key}: {about}\n");
+        }
+        sensor::keys(sensor).iter().for_each(|key| text += &declared(key));
+    }
+    text
+}
+
+/// A declared key with what it takes.
+fn declared(key: &Key) -> String {
+    let takes = match key.takes {
+        Takes::Scalar(kind) | Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Resolution(kind) => {
+            format!("{}, such as \"{}\"", kind.name(), kind.example())
+        }
+        Takes::Duration => "time, such as \"2 s\"".into(),
+        Takes::Word(words) => words.join(" or "),
+    };
+    let default = key.default.map_or(String::new(), |default| format!(" (default {default})"));
+    format!("  {}: {}; {takes}{default}\n", key.name, key.about)
+}
+
 fn motions() -> String {
     let mut text = String::new();
     for kind in motion::KINDS {
         text += &format!("{}: {}\n", kind.name, kind.about);
-        for key in kind.keys {
-            let takes = match key.takes {
-                Takes::Scalar(kind) | Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Resolution(kind) => {
-                    format!("{}, such as \"{}\"", kind.name(), kind.example())
-                }
-                Takes::Duration => "time, such as \"2 s\"".into(),
-                Takes::Word(words) => words.join(" or "),
-            };
-            let default = key.default.map_or(String::new(), |default| format!(" (default {default})"));
-            text += &format!("  {}: {}; {takes}{default}\n", key.name, key.about);
-        }
+        kind.keys.iter().for_each(|key| text += &declared(key));
     }
     text
 }
@@ -106,5 +129,5 @@ fn ports() -> String {
     }
     let known = |text: Option<String>| text.unwrap_or_else(|| "-".into());
     let rows = ports.into_iter().map(|port| vec![port.path.display().to_string(), known(port.product), known(port.manufacturer), port.command]);
-    table(&["port", "product", "manufacturer", "used by"], &rows.collect::<Vec<_>>())
+    table(&["port", "product", "manufacturer", "try"], &rows.collect::<Vec<_>>())
 }

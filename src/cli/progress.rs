@@ -27,7 +27,7 @@ impl Bar {
     pub fn live(&self, progress: &Progress) {
         let Progress { t, packets, dropped, error_deg } = progress;
         let error = error_deg.map_or(String::new(), |degrees| format!(", AHRS off by {degrees:.2}°"));
-        let lost = if *dropped > 0 { format!(", {dropped} samples lost") } else { String::new() };
+        let lost = if *dropped > 0 { format!(", {dropped} samples dropped") } else { String::new() };
         self.0.set_message(format!("{:.1} s, {packets} packets{lost}{error}", t.seconds()));
         self.0.set_position((t.0 / MILLIS) as u64);
     }

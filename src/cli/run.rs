@@ -55,6 +55,9 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    if arguments.scene.is_none() && !arguments.to.is_empty() {
+        return Err(Refusal(format!("--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones", arguments.to[0].to)));
+    }
     let plan = Plan::load(arguments.scene.as_deref().unwrap_or(DEMO_SCENE), &arguments.set)?;
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
     let demonstration = outputs.is_empty();
@@ -80,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
-    judge(&mut report, &limits)?;
+    judge(&mut report, &limits, outcome.command)?;
     eprint!("{}", summary::run(&report, &outcome));
     if let Some(dir) = &arguments.out {
         super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
@@ -183,18 +186,18 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         seed: plan.seed,
         duration_s: 0.0,
         speed: Value::Null,
-        host: host(false),
+        host: host(false, false),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),
         attitude: Some(score),
     }
 }
 
-fn host(realtime: bool) -> Host {
+fn host(realtime: bool, memory_locked: bool) -> Host {
     let name = rustix::system::uname();
     let cpus = std::thread::available_parallelism().map_or(1, |cpus| cpus.get());
     let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());
-    Host { kernel, cpus, realtime, clock: "CLOCK_MONOTONIC" }
+    Host { kernel, cpus, realtime, memory_locked, clock: "CLOCK_MONOTONIC" }
 }
 
 fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
@@ -203,18 +206,19 @@ fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
         Speed::Times(times) => times.into(),
         Speed::Max => "max".into(),
     };
-    report.host = host(outcome.realtime);
+    report.host = host(outcome.realtime, outcome.memory_locked);
     report.sensors = outcome.sensors.clone();
     report.links = outcome.links.clone();
     report.attitude = outcome.score.clone();
 }
 
-/// Losses and broken limits.
-fn judge(report: &mut Report, limits: &[Limit]) -> Result<(), Refusal> {
+/// Losses, broken limits, and a command that failed.
+fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
     let lost = report.sensors.iter().filter(|sensor| sensor.dropped > 0);
     let mut failed: Vec<_> = lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
     let broken = report.links.iter().filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?)));
     failed.extend(broken);
+    failed.extend(command.filter(|code| *code != 0).map(|code| format!("the command ended with exit code {code}")));
     let value = serde_json::to_value(&*report)?;
     failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
     report.ok = failed.is_empty();

@@ -31,9 +31,6 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     for failure in &report.failed {
         text += &format!("FAILED: {failure}\n");
     }
-    if let Some(code) = outcome.command.filter(|code| *code != 0) {
-        text += &format!("FAILED: the command ended with exit code {code}\n");
-    }
     text
 }
 
@@ -46,7 +43,7 @@ fn sensors(report: &Report) -> String {
     let paced = report.sensors.iter().any(|sensor| sensor.late_us.is_some());
     let mut heading = vec!["sensor", "asked Hz", "sent Hz"];
     heading.extend(received.then_some("received Hz"));
-    heading.extend(["made", "sent", "lost"]);
+    heading.extend(["made", "sent", "dropped"]);
     if paced {
         heading.extend(["late µs p50", "p99", "p99.9", "max"]);
     }
@@ -70,5 +67,5 @@ fn links(report: &Report) -> String {
         let load = link.utilisation.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
         vec![link.name.clone(), link.packets.to_string(), link.bytes.to_string(), link.dropped.to_string(), missed, load]
     });
-    table(&["link", "packets", "bytes", "not taken", "missed by receiver", "of baud rate"], &rows.collect::<Vec<_>>())
+    table(&["link", "packets", "bytes", "dropped", "missed by receiver", "of baud rate"], &rows.collect::<Vec<_>>())
 }

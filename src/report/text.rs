@@ -1,6 +1,6 @@
 //! Plain tables for people.
 
-/// A number with at most four significant digits and no useless zeros.
+/// A number with four significant digits (whole numbers below 10⁹ with all of theirs) and no useless zeros.
 pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value + 0.0);
@@ -13,17 +13,20 @@ pub fn number(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-/// Rows under a heading, columns aligned: the first to the left, the others to the right.
+/// Rows under a heading, columns aligned: those of numbers to the right, the others to the left.
 pub fn table(heading: &[&str], rows: &[Vec<String>]) -> String {
     let width = |i: usize| {
         let cells = rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count());
         cells.chain(heading.get(i).map(|cell| cell.chars().count())).max().unwrap_or(0)
     };
     let widths: Vec<_> = (0..heading.len()).map(width).collect();
+    let is_number = |cell: &String| cell == "-" || cell.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
+    let numbers = |i: usize| rows.iter().filter_map(|row| row.get(i)).all(is_number);
+    let right: Vec<_> = (0..heading.len()).map(numbers).collect();
     let line = |cells: Vec<&str>| {
-        let padded = cells.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| match i {
-            0 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
+        let padded = cells.iter().zip(&widths).zip(&right).map(|((cell, &width), right)| match right {
+            false => format!("{cell:<width$}"),
+            true => format!("{cell:>width$}"),
         });
         padded.collect::<Vec<_>>().join("  ").trim_end().to_string() + "\n"
     };

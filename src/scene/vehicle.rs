@@ -201,21 +201,3 @@ fn force(section: &Section<'_>) -> Option<Force> {
     };
     Some(Force { start, end: start + duration?, push })
 }
-
-/// Every table and key that `[start]`, `[earth]`, a motion or a force knows, for `list` and the docs.
-pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
-    ("start", "attitude", "roll, pitch, yaw at t = 0: \"[0, 0, 0] deg\""),
-    ("start", "quaternion", "instead: [w, x, y, z], body to nav"),
-    ("earth", "gravity", "its strength, or the acceleration of free fall as a nav vector: \"9.80665 m/s^2\""),
-    ("earth", "field", "the magnetic field, a nav vector: \"[20, 0, 45] uT\""),
-    ("earth", "latitude", "of a place: normal gravity (WGS 84) and the field (World Magnetic Model)"),
-    ("earth", "longitude", "of the place, east positive"),
-    ("earth", "altitude", "above the ellipsoid"),
-    ("earth", "date", "on which the field is wanted: \"2026-11-22\""),
-    ("motion", "kind", "one of `ratetable list motions`"),
-    ("motion", "duration", "of the segment"),
-    ("force", "start", "when it begins"),
-    ("force", "duration", "how long it acts"),
-    ("force", "acceleration", "a vector in `frame`"),
-    ("force", "frame", "\"body\" (default) or \"nav\""),
-];

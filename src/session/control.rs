@@ -21,7 +21,7 @@ use tokio::process::Child;
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::oneshot;
 
-/// Packets made ahead: at most half a second of the fastest sensors, 2 MB.
+/// Packets made ahead, 2 MB: about a second of the fastest sensors, and seven at 1 kHz.
 const RING: usize = 8192;
 /// From the start of the pacing thread to scene time 0.
 const LEAD: i64 = 5_000_000;
@@ -50,6 +50,8 @@ struct Run {
     interrupted: bool,
     /// The command's exit code, once it has ended by itself.
     ended: Option<i32>,
+    /// Tasks that read what comes back; each holds its link open.
+    ears: Vec<tokio::task::JoinHandle<()>>,
 }
 
 /// What ended a wait.
@@ -96,6 +98,7 @@ impl Run {
             heard: Rc::new(RefCell::new(heard)),
             interrupted: false,
             ended: None,
+            ears: Vec::new(),
         }
     }
 
@@ -130,9 +133,9 @@ impl Run {
         let pacer = Pacer::new(self.clock, consumer, senders, self.job.speed);
         let (pacing, mut notices, mut done) = self.start_pacer(pacer)?;
         self.attend(on, &mut signals, &mut program, &mut notices, &mut done).await;
-        let (mut pacer, realtime) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        let (mut pacer, granted) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         let made = self.collect(producer, &mut pacer);
-        self.finish(Ended { pacer, links, program, names, realtime, made }).await
+        self.finish(Ended { pacer, links, program, names, granted, made }).await
     }
 
     fn start_producer(&self, ring: rtrb::Producer<Item>) -> JoinHandle<Made> {
@@ -176,7 +179,7 @@ impl Run {
         Ok(true)
     }
 
-    fn listen(&self, links: &mut [Link]) {
+    fn listen(&mut self, links: &mut [Link]) {
         for (i, link) in links.iter_mut().enumerate() {
             let Some(receiver) = link.receiver() else { continue };
             let ear = Ear {
@@ -186,7 +189,7 @@ impl Run {
                 speed: self.job.speed,
                 heard: self.heard.clone(),
             };
-            tokio::task::spawn_local(ear.listen(i, self.job.outputs[i].to.protocol, receiver));
+            self.ears.push(tokio::task::spawn_local(ear.listen(i, self.job.outputs[i].to.protocol, receiver)));
         }
     }
 
@@ -196,11 +199,11 @@ impl Run {
         let (tell, notices) = oneshot::channel();
         let (over, done) = oneshot::channel();
         let body = move || {
-            let realtime = if paced { Some(privileges()) } else { None };
-            let _ = tell.send(realtime.as_ref().and_then(|granted| granted.as_ref().err().cloned()));
+            let granted = if paced { privileges() } else { Granted::default() };
+            let _ = tell.send(granted.refused.clone());
             pacer.run(pacer.clock.now() + LEAD, &shared);
             let _ = over.send(());
-            (pacer, realtime.is_some_and(|granted| granted.is_ok()))
+            (pacer, granted)
         };
         let thread = thread::Builder::new().name("pacing".into()).spawn(body);
         let thread = thread.map_err(|source| SessionError::System { doing: "start the pacing thread", source })?;
@@ -266,8 +269,8 @@ impl Run {
     }
 
     /// Lets the other side take what was sent, closes everything, and adds up.
-    async fn finish(self, ended: Ended) -> Result<Outcome, SessionError> {
-        let Ended { mut pacer, links, program, names, realtime, made: (made, left) } = ended;
+    async fn finish(mut self, ended: Ended) -> Result<Outcome, SessionError> {
+        let Ended { mut pacer, links, program, names, granted, made: (made, left) } = ended;
         for (sender, gone) in pacer.senders.iter_mut().zip(&mut pacer.gone) {
             if let Err(error) = sender.finish() {
                 gone.get_or_insert(error.kind());
@@ -277,6 +280,13 @@ impl Run {
         drop(pacer.senders);
         if !self.heard.borrow().estimates.is_empty() {
             tokio::time::sleep(LAST_ANSWERS).await;
+        }
+        for ear in &self.ears {
+            ear.abort();
+        }
+        for ear in std::mem::take(&mut self.ears) {
+            // Only when its task is gone does a link's descriptor close, and the other side see the end.
+            let _ = ear.await;
         }
         for link in links {
             link.close().await;
@@ -295,7 +305,8 @@ impl Run {
         Ok(Outcome {
             played: self.played(&tallies),
             interrupted: self.interrupted,
-            realtime,
+            realtime: granted.priority,
+            memory_locked: granted.memory,
             sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
             links: self.link_reports(&tallies, &gone, names),
             score: heard.scorer.score(&self.job.estimator),
@@ -345,6 +356,7 @@ impl Run {
             played: SimTime::ZERO,
             interrupted: self.interrupted,
             realtime: false,
+            memory_locked: false,
             sensors: tally::sensors(&self.job.plan, &tallies, [0; 3], [0; 3], false),
             links: self.link_reports(&tallies, &gone, names),
             score: None,
@@ -360,26 +372,33 @@ struct Ended {
     links: Vec<Link>,
     program: Program,
     names: Vec<String>,
-    realtime: bool,
+    granted: Granted,
     /// Samples made, and those left in the ring.
     made: (Made, [u64; 3]),
 }
 
-type Paced = (JoinHandle<(Pacer<WallClock>, bool)>, oneshot::Receiver<Option<String>>, oneshot::Receiver<()>);
+type Paced = (JoinHandle<(Pacer<WallClock>, Granted)>, oneshot::Receiver<Option<String>>, oneshot::Receiver<()>);
 
-/// Real-time priority and locked memory for the calling thread, or one notice that says what would grant them.
-fn privileges() -> Result<(), String> {
+/// What the system granted the pacing thread.
+#[derive(Clone, Debug, Default)]
+struct Granted {
+    priority: bool,
+    memory: bool,
+    /// One notice about what it did not grant, and what would.
+    refused: Option<String>,
+}
+
+/// Asks for real-time priority for the calling thread and locked memory for the process.
+fn privileges() -> Granted {
     let priority = os::set_realtime_priority(PRIORITY);
     let memory = os::lock_memory();
     let refused: Vec<_> = [("real-time priority", &priority), ("locked memory", &memory)]
         .into_iter()
         .filter_map(|(what, granted)| granted.as_ref().err().map(|error| format!("{what} ({error})")))
         .collect();
-    if refused.is_empty() {
-        return Ok(());
-    }
-    Err(format!(
+    let notice = format!(
         "not granted: {}; packets may be later on a busy machine. To grant it: `sudo setcap cap_sys_nice,cap_ipc_lock+ep` on this program, or `rtprio 50` and `memlock unlimited` in /etc/security/limits.conf",
         refused.join(", ")
-    ))
+    );
+    Granted { priority: priority.is_ok(), memory: memory.is_ok(), refused: (!refused.is_empty()).then_some(notice) }
 }

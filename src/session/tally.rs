@@ -87,14 +87,14 @@ fn report(kind: SensorKind, rate_hz: f64, tallies: &[LinkTally], made: [u64; 3],
     SensorReport {
         name: kind.name().to_string(),
         rate_hz,
-        sent_hz,
+        sent_hz: sent_hz.filter(|_| paced),
         received_hz: None,
         made: made[kind as usize],
         sent: all.sent,
         dropped: all.dropped,
         queued: queued[kind as usize],
         late_us: (paced && !all.late.is_empty()).then(|| late(&all.late)),
-        interval_us: (!all.interval.is_empty()).then(|| interval(&all.interval)),
+        interval_us: (paced && !all.interval.is_empty()).then(|| interval(&all.interval)),
         write_us: (!all.write.is_empty()).then(|| spread(&all.write)),
     }
 }

@@ -1,0 +1,36 @@
+//! The keys that a scene knows besides those which motions and error terms declare: name and meaning, for
+//! `ratetable list keys`.
+
+/// Table, key, meaning; the scene itself is the table `""`.
+pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
+    ("", "name", "what reports and datasets call it (default: the file's name)"),
+    ("", "seed", "from which every random number comes, a whole number (default 0)"),
+    ("", "duration", "how long it lasts (default: the sum of its motions); after the last motion the vehicle holds"),
+    ("", "axes", "\"ned-frd\" (default) or \"enu-flu\": how this file and its datasets are written"),
+    ("", "limits", "of the report, such as [\"sensors.gyro.late_us.p99<200\"]"),
+    ("start", "attitude", "roll, pitch, yaw at t = 0: \"[0, 0, 0] deg\""),
+    ("start", "quaternion", "instead: [w, x, y, z], body to nav"),
+    ("earth", "gravity", "its strength, or the acceleration of free fall as a nav vector: \"9.80665 m/s^2\""),
+    ("earth", "field", "the magnetic field, a nav vector: \"[20, 0, 45] uT\""),
+    ("earth", "latitude", "of a place: normal gravity (WGS 84) and the field (World Magnetic Model)"),
+    ("earth", "longitude", "of the place, east positive"),
+    ("earth", "altitude", "above the ellipsoid"),
+    ("earth", "date", "on which the field is wanted: \"2026-11-22\""),
+    ("motion", "kind", "one of `ratetable list motions`"),
+    ("motion", "duration", "of the segment"),
+    ("force", "start", "when it begins"),
+    ("force", "duration", "how long it acts"),
+    ("force", "acceleration", "a vector in `frame`"),
+    ("force", "frame", "\"body\" (default) or \"nav\""),
+    ("output", "to", "PROTOCOL@LINK, such as \"mpu@pty\""),
+    ("output", "layout", "of `mpu`: \"separate\" or \"burst\" (default: burst where gyro and accel tick alike)"),
+];
+
+/// Keys of every sensor besides its error terms'.
+pub const SENSOR_KEYS: &[(&str, &str)] = &[
+    ("rate", "output data rate, such as \"1 kHz\" or \"400/3 Hz\""),
+    ("phase", "when tick 0 is due (default \"0 s\")"),
+    ("sampling", "\"point\" (default), or \"average\" over the interval that ends at the tick"),
+    ("mount", "where the chip's x, y and z point, such as \"flu\", or a quaternion from body to chip"),
+    ("part", "fill from a datasheet: one of `ratetable list parts`; keys beside it override"),
+];
