@@ -26,20 +26,11 @@ impl Double {
     /// One.
     pub const ONE: Double = Double { hi: 1.0, lo: 0.0 };
     /// π.
-    pub const PI: Double = Double {
-        hi: std::f64::consts::PI,
-        lo: 1.224_646_799_147_353_2e-16,
-    };
+    pub const PI: Double = Double { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
     /// 2π, one turn in radians.
-    pub const TAU: Double = Double {
-        hi: std::f64::consts::TAU,
-        lo: 2.449_293_598_294_706_4e-16,
-    };
+    pub const TAU: Double = Double { hi: std::f64::consts::TAU, lo: 2.449_293_598_294_706_4e-16 };
     /// π/180, one degree in radians.
-    pub const PI_OVER_180: Double = Double {
-        hi: 0.017_453_292_519_943_295,
-        lo: 2.948_652_270_870_168_7e-19,
-    };
+    pub const PI_OVER_180: Double = Double { hi: 0.017_453_292_519_943_295, lo: 2.948_652_270_870_168_7e-19 };
 
     /// The exact sum of `hi` and `lo`, whichever is the larger.
     pub const fn new(hi: f64, lo: f64) -> Self {
@@ -61,10 +52,7 @@ impl Double {
             return None;
         }
         let lo = literal.minus(hi.abs());
-        Some(Self {
-            hi,
-            lo: if hi.is_sign_negative() { -lo } else { lo },
-        })
+        Some(Self { hi, lo: if hi.is_sign_negative() { -lo } else { lo } })
     }
 
     /// The nearest `f64`.
@@ -79,11 +67,7 @@ impl Double {
 
     /// The absolute value.
     pub fn abs(self) -> Self {
-        if self.hi < 0.0 || (self.hi == 0.0 && self.lo < 0.0) {
-            -self
-        } else {
-            self
-        }
+        if self.hi < 0.0 || (self.hi == 0.0 && self.lo < 0.0) { -self } else { self }
     }
 
     /// The square root; of a negative number, NaN.
@@ -135,11 +119,7 @@ impl Double {
 
     /// `sum + error` where they already do not overlap; infinities carry no error.
     const fn renormalised(sum: f64, error: f64) -> Self {
-        if sum.is_finite() {
-            Self { hi: sum, lo: error }
-        } else {
-            Self { hi: sum, lo: 0.0 }
-        }
+        if sum.is_finite() { Self { hi: sum, lo: error } } else { Self { hi: sum, lo: 0.0 } }
     }
 }
 
@@ -165,20 +145,14 @@ impl From<i64> for Double {
     /// Exact.
     fn from(value: i64) -> Self {
         let hi = value as f64;
-        Self {
-            hi,
-            lo: (i128::from(value) - hi as i128) as f64,
-        }
+        Self { hi, lo: (i128::from(value) - hi as i128) as f64 }
     }
 }
 
 impl Neg for Double {
     type Output = Self;
     fn neg(self) -> Self {
-        Self {
-            hi: -self.hi,
-            lo: -self.lo,
-        }
+        Self { hi: -self.hi, lo: -self.lo }
     }
 }
 
@@ -265,10 +239,7 @@ mod decimal {
             }
             let dropped = i64::try_from(significant.saturating_sub(DIGITS)).ok()?;
             let exponent = (power - places + dropped).clamp(-1_000_000_000, 1_000_000_000);
-            Some(Self {
-                digits,
-                exponent: i32::try_from(exponent).ok()?,
-            })
+            Some(Self { digits, exponent: i32::try_from(exponent).ok()? })
         }
 
         /// The literal less `hi`, which is the `f64` nearest to it (and so 0 or not far off).
@@ -369,9 +340,7 @@ mod decimal {
 
         fn less_than(&self, other: &Whole) -> bool {
             let lengths = self.0.len().cmp(&other.0.len());
-            lengths
-                .then_with(|| self.0.iter().rev().cmp(other.0.iter().rev()))
-                .is_lt()
+            lengths.then_with(|| self.0.iter().rev().cmp(other.0.iter().rev())).is_lt()
         }
 
         /// `self - other`, which is not above it.
@@ -444,11 +413,7 @@ mod tests {
             ("5.", 5.0, 0.0),
             ("+2.5E-0", 2.5, 0.0),
             ("9007199254740993", 9007199254740992.0, 1.0),
-            (
-                "123456789012345678901234567890",
-                1.2345678901234568e29,
-                1_023_514_970_834.0,
-            ),
+            ("123456789012345678901234567890", 1.2345678901234568e29, 1_023_514_970_834.0),
             ("0e999999999999", 0.0, 0.0),
             ("-0", -0.0, 0.0),
         ] {
@@ -509,11 +474,7 @@ mod tests {
     fn whole_numbers_are_exact() {
         for value in [0, 1, -1, i64::MAX, i64::MIN, (1 << 53) + 1, -(1 << 62) - 1] {
             let double = Double::from(value);
-            assert_eq!(
-                double,
-                Double::new(double.hi, double.lo),
-                "{value} is normalised"
-            );
+            assert_eq!(double, Double::new(double.hi, double.lo), "{value} is normalised");
             assert_eq!(double.round_to_i64(), Some(value));
         }
     }
@@ -543,12 +504,7 @@ mod tests {
     #[test]
     fn infinities_carry_no_error_term() {
         let large = Double::from(f64::MAX);
-        for value in [
-            large * large,
-            large + large,
-            large / read("1e-300"),
-            Double::new(f64::INFINITY, 1.0),
-        ] {
+        for value in [large * large, large + large, large / read("1e-300"), Double::new(f64::INFINITY, 1.0)] {
             assert_eq!((value.hi, value.lo), (f64::INFINITY, 0.0));
             assert!(!value.is_finite());
         }
@@ -565,27 +521,11 @@ mod tests {
         ("7.25", 0.8230808790115055, 0.5679241732886948),
         ("123456.789", -0.9986640823434471, 0.05167253271439977),
         ("3.14159265358979", 3.2384626433832794e-15, -1.0),
-        (
-            "6.28318530717958647692528676655900577",
-            1.6056612012497883e-36,
-            1.0,
-        ),
-        (
-            "31415926.5358979",
-            -3.238462643383279e-08,
-            0.9999999999999994,
-        ),
+        ("6.28318530717958647692528676655900577", 1.6056612012497883e-36, 1.0),
+        ("31415926.5358979", -3.238462643383279e-08, 0.9999999999999994),
         ("1e9", 0.5458434494486996, 0.8378871813639024),
-        (
-            "999999999.123456789",
-            -0.29470594974767106,
-            0.9555879881953955,
-        ),
-        (
-            "1234567890123456.789",
-            0.36232593881701824,
-            0.9320514546205946,
-        ),
+        ("999999999.123456789", -0.29470594974767106, 0.9555879881953955),
+        ("1234567890123456.789", 0.36232593881701824, 0.9320514546205946),
     ];
 
     #[test]
@@ -600,10 +540,7 @@ mod tests {
                 );
             }
             let (sin, cos) = read(angle).neg().sin_cos();
-            assert!(
-                (sin + sine).abs() <= 2.3e-16 && (cos - cosine).abs() <= 2.3e-16,
-                "-{angle}"
-            );
+            assert!((sin + sine).abs() <= 2.3e-16 && (cos - cosine).abs() <= 2.3e-16, "-{angle}");
         }
         assert!(Double::from(f64::INFINITY).sin_cos().0.is_nan());
     }

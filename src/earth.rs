@@ -115,7 +115,8 @@ mod tests {
         for (latitude, expected) in [(0.0, 9.780_325_335_9), (90.0, 9.832_184_937_9), (45.0, 9.806_197_769)] {
             assert!((normal_gravity(place(latitude, 0.0, 0.0)) - expected).abs() < 1e-8, "{latitude}");
         }
-        let gradient = (normal_gravity(place(45.0, 0.0, 1000.0)) - normal_gravity(place(45.0, 0.0, 0.0))) / 1000.0;
+        let gradient =
+            (normal_gravity(place(45.0, 0.0, 1000.0)) - normal_gravity(place(45.0, 0.0, 0.0))) / 1000.0;
         assert!((gradient + 3.086e-6).abs() < 2e-9, "free air is -0.3086 mGal a metre: {gradient}");
     }
 

@@ -19,7 +19,8 @@ pub fn axes(seed: u64, name: &str) -> [Stream; 3] {
 
 /// FNV-1a, 64 bits (Fowler, Noll & Vo): names a few dozen bytes long spread over all of them.
 fn fnv1a(name: &str) -> u64 {
-    name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    name.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// The finaliser of splitmix64 (Steele, Lea & Flood 2014): neighbouring seeds differ in half their bits.
@@ -44,7 +45,9 @@ mod tests {
     fn the_same_seed_and_name_repeat_and_any_other_does_not() {
         assert_eq!(normals(7, "gyro/white/x"), normals(7, "gyro/white/x"));
         let n = 20_000f64;
-        for (seed, name) in [(8, "gyro/white/x"), (7, "gyro/white/y"), (7, "accel/white/x"), (7, "gyro/walk/x")] {
+        for (seed, name) in
+            [(8, "gyro/white/x"), (7, "gyro/white/y"), (7, "accel/white/x"), (7, "gyro/walk/x")]
+        {
             let (a, b) = (normals(7, "gyro/white/x"), normals(seed, name));
             let correlation = a.iter().zip(&b).map(|(a, b)| a * b).sum::<f64>() / n;
             assert!(correlation.abs() < 4.0 / n.sqrt(), "{seed} {name}: {correlation}");

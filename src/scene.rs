@@ -9,27 +9,31 @@
 
 pub mod builtin;
 pub mod document;
+mod draw;
 mod fixed_keys;
 mod output;
+pub mod parts;
+mod reader;
 mod section;
 mod sensors;
 mod suggest;
 mod vehicle;
 
 pub use document::Place;
+pub use draw::Drawn;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
 pub use output::{Destination, Output};
-pub use section::Drawn;
-pub use sensors::part_sources;
 pub use suggest::nearest;
 
 use crate::earth::Day;
 use crate::geometry::Axes;
 use crate::motion::Trajectory;
+use crate::quantity::Sign;
 use crate::sensor::{Sensor, SensorPlan};
 use crate::time::SimTime;
 use document::{Mistake, Table};
-use section::{Reader, Section};
+use reader::Reader;
+use section::Section;
 use std::fmt;
 use std::path::Path;
 
@@ -73,7 +77,8 @@ impl Plan {
                 (std::fs::read_to_string(path).map_err(unreadable)?, scene.to_string())
             }
         };
-        let stem = Path::new(scene).file_stem().map_or(scene.to_string(), |stem| stem.to_string_lossy().into());
+        let stem =
+            Path::new(scene).file_stem().map_or(scene.to_string(), |stem| stem.to_string_lossy().into());
         Plan::parse(&text, &name, &stem, sets)
     }
 
@@ -90,7 +95,7 @@ impl Plan {
         let reader = Reader::new();
         let plan = read(&reader, table, name);
         match reader.finish() {
-            Ok(drawn) => plan.map(|plan| Plan { drawn, ..plan }).ok_or_else(|| SceneError::unreadable(source, &"nothing read")),
+            Ok(drawn) => Ok(Plan { drawn, ..plan }),
             Err(mistakes) => Err(SceneError { mistakes }),
         }
     }
@@ -115,9 +120,11 @@ impl Plan {
     }
 }
 
-fn read(reader: &Reader, table: Table, name: &str) -> Option<Plan> {
+/// What the table says; a scene with mistakes, which the reader collects, gives some plan that is not to be used.
+fn read(reader: &Reader, table: Table, name: &str) -> Plan {
+    let whole = table.place.clone();
     let top = Section::new(reader, "", table);
-    let name = top.text("name", Some(name))?;
+    let name = top.text("name", Some(name)).unwrap_or_default();
     let seed = top.whole("seed", 0);
     reader.seed.set(seed);
     let axes = Axes::from_name(top.word("axes", &Axes::NAMES, Axes::NAMES[0])).unwrap_or_default();
@@ -129,14 +136,26 @@ fn read(reader: &Reader, table: Table, name: &str) -> Option<Plan> {
     let motions = vehicle::motions(&top, earth.gravity.length());
     let forces = vehicle::forces(&top);
     let sensors = sensors::sensors(&top);
-    let outputs = output::outputs(&top, &sensors.plans);
-    let trajectory = Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
-    let duration = duration(&top, &trajectory);
-    if sensors.plans.is_empty() {
-        top.mistake("gyro", "a scene needs at least one of [gyro], [accel] and [mag]");
-    }
+    let outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
+    let trajectory =
+        Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
+    let moving = trajectory.moving_until();
+    let default = (moving > SimTime::ZERO).then(|| moving.to_string());
+    let duration = top.time("duration", default.as_deref(), Sign::Positive);
 
     let mut resolved = top.finish();
+    // Only of a scene without other mistakes: each of them may be why these two seem to lack.
+    if reader.clean() {
+        if sensors.plans.is_empty() {
+            reader.mistake(
+                &whole,
+                "a scene needs at least one sensor, [gyro], [accel] or [mag], with its rate",
+            );
+        }
+        if duration.is_none() {
+            reader.mistake(&whole, "a scene needs a motion or a duration, such as duration = \"10 s\"");
+        }
+    }
     for (key, table) in [("start", start.resolved), ("earth", earth.resolved)] {
         resolved.insert(key.into(), table.into());
     }
@@ -151,10 +170,10 @@ fn read(reader: &Reader, table: Table, name: &str) -> Option<Plan> {
     if !outputs.resolved.is_empty() {
         resolved.insert("output".into(), outputs.resolved.into());
     }
-    Some(Plan {
+    Plan {
         name,
         seed,
-        duration,
+        duration: duration.unwrap_or_default(),
         axes,
         day: earth.day,
         limits,
@@ -163,39 +182,22 @@ fn read(reader: &Reader, table: Table, name: &str) -> Option<Plan> {
         outputs: outputs.outputs,
         drawn: Vec::new(),
         resolved: toml::to_string(&resolved).unwrap_or_default(),
-    })
-}
-
-/// As the scene says, or the sum of its motions.
-fn duration(top: &Section<'_>, trajectory: &Trajectory) -> SimTime {
-    let moving = trajectory.moving_until();
-    let default = (moving > SimTime::ZERO).then(|| moving.to_string());
-    let missing = !top.has("duration") && default.is_none();
-    match top.time("duration", default.as_deref()) {
-        Some(duration) if duration > SimTime::ZERO => duration,
-        _ => {
-            if missing {
-                top.mistake("duration", "the scene has neither a motion nor a duration: write, for example, duration = \"10 s\"");
-            } else if top.has("duration") {
-                top.mistake("duration", "a duration is above 0, such as \"10 s\"");
-            }
-            SimTime::ZERO
-        }
     }
 }
 
 /// A scene that cannot be played: every mistake in it.
 #[derive(Clone, Debug)]
 pub struct SceneError {
-    /// At least one, in the order found.
+    /// At least one, in the order written; those of the command line first.
     pub mistakes: Vec<Mistake>,
 }
 
 impl SceneError {
     fn unreadable(scene: &str, why: &dyn fmt::Display) -> SceneError {
         let names = builtin::SCENES.map(|(name, _)| name);
-        let near = nearest(scene, names).map_or(String::new(), |near| format!("; did you mean the built-in `{near}`?"));
-        let message = format!("this is neither a scene file ({why}) nor a built-in scene ({}){near}", names.join(", "));
+        let near = suggest::did_you_mean(scene, names);
+        let message =
+            format!("this is neither a scene file ({why}) nor a built-in scene ({}){near}", names.join(", "));
         SceneError { mistakes: vec![Mistake { place: Place::whole(scene), message }] }
     }
 }
@@ -214,5 +216,7 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
+#[cfg(test)]
+mod mistakes_tests;
 #[cfg(test)]
 mod tests;

@@ -266,12 +266,23 @@ pub struct TermKind {
 }
 
 /// Every error term, in the order of the chain.
-pub static TERMS: [&TermKind; 6] =
-    [&bias::KIND, &bias_instability::KIND, &bias_walk::KIND, &white_noise::KIND, &range::KIND, &resolution::KIND];
+pub static TERMS: [&TermKind; 6] = [
+    &bias::KIND,
+    &bias_instability::KIND,
+    &bias_walk::KIND,
+    &white_noise::KIND,
+    &range::KIND,
+    &resolution::KIND,
+];
 
 /// Every key of a sensor's error terms.
 pub fn keys(sensor: SensorKind) -> Vec<Key> {
     TERMS.iter().flat_map(|term| (term.keys)(sensor)).collect()
+}
+
+/// Everything wrong with a plan's values.
+pub fn check(plan: &SensorPlan, seed: u64) -> Vec<KeyError> {
+    TERMS.iter().filter_map(|term| (term.build)(&plan.values, &plan.context(seed)).err()).collect()
 }
 
 /// A sensor at work: the terms its scene uses.
@@ -329,4 +340,6 @@ impl Sensor {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod parts_tests;
+#[cfg(test)]
+mod tests;

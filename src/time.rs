@@ -165,7 +165,11 @@ mod tests {
             for phase in [0, 1, 333_333_333] {
                 for end in [1, 888_889, 999_999_999, NANOS, NANOS + 1, 2_345_678_901] {
                     let by_hand = (0..).take_while(|&k| phase + rate.tick(k).0 < end).count() as u64;
-                    assert_eq!(rate.ticks_before(SimTime(phase), SimTime(end)), by_hand, "{rate} {phase} {end}");
+                    assert_eq!(
+                        rate.ticks_before(SimTime(phase), SimTime(end)),
+                        by_hand,
+                        "{rate} {phase} {end}"
+                    );
                 }
             }
         }

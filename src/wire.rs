@@ -10,7 +10,7 @@ mod mpu;
 mod text;
 
 use crate::earth::Day;
-use crate::geometry::Axes;
+use crate::geometry::{Axes, Body, Vector};
 use crate::schedule::{Schedule, Ticks};
 use crate::sensor::{Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
@@ -27,7 +27,7 @@ pub struct Packet {
     /// Bit i is set when it carries a new sample of the sensor of kind i.
     pub carries: u8,
     /// Samples of each kind that a newer one replaced before any packet carried them.
-    pub replaced: [u16; 3],
+    pub replaced: [u32; 3],
     len: u16,
     bytes: [u8; MAX_PACKET],
 }
@@ -141,7 +141,10 @@ pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
 /// Why not, and what would be right.
 pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> Result<(), String> {
     let has = |kind| sensors.iter().any(|sensor| sensor.kind == kind);
-    if protocol == Protocol::Mpu && options.layout == Some(Layout::Burst) && !(has(SensorKind::Gyro) && has(SensorKind::Accel)) {
+    if protocol == Protocol::Mpu
+        && options.layout == Some(Layout::Burst)
+        && !(has(SensorKind::Gyro) && has(SensorKind::Accel))
+    {
         return Err("`layout = \"burst\"` needs both [gyro] and [accel]".into());
     }
     Ok(())
@@ -162,8 +165,11 @@ pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
         .collect()
 }
 
-/// Bytes and packets a second, found by encoding ten seconds of the scene's own ticks with readings of zero.
+/// Bytes and packets a second, found by encoding ten seconds of the scene's own ticks. Text is as long as its
+/// numbers: these have as many digits as noise has.
 pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
+    const MANY_DIGITS: Vector<Body> =
+        Vector::new(-0.012_345_678_901_234_568, -0.012_345_678_901_234_568, -0.012_345_678_901_234_568);
     let seconds = 10;
     let ticks = setup.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
     let mut encoder = encoder(protocol, setup);
@@ -172,7 +178,8 @@ pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
     for due in Schedule::new(ticks, SimTime(seconds * NANOS)) {
         readings.clear();
         let sensors = setup.sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
-        readings.extend(sensors.map(|(i, plan)| Reading::zero(i, plan.kind)));
+        readings
+            .extend(sensors.map(|(i, plan)| Reading { value: MANY_DIGITS, ..Reading::zero(i, plan.kind) }));
         packets.clear();
         encoder.encode(due.t, &readings, &mut packets);
         count += packets.len();
@@ -202,7 +209,7 @@ impl EverySecond {
 struct Newest {
     values: [Option<Reading>; 3],
     fresh: u8,
-    replaced: [u16; 3],
+    replaced: [u32; 3],
 }
 
 impl Newest {

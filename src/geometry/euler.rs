@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn each_angle_turns_about_its_own_axis_in_order() {
-        let d = std::f64::consts::FRAC_PI_2;
+        let d = FRAC_PI_2;
         // Yaw 90° then pitch 30° then roll: forward points East and up by 30°.
         let q = Euler { roll: 0.7, pitch: d / 3.0, yaw: d }.to_quat();
         let forward = super::super::rotate(q, glam::DVec3::X);

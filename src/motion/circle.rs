@@ -8,7 +8,7 @@ use super::{Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;
 use crate::geometry::{Attitude, Euler, Nav, Vector, exp};
 use crate::keys::{Key, KeyError, Takes, Values};
-use crate::quantity::Kind;
+use crate::quantity::{Kind, Sign, text_scalar};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -16,9 +16,24 @@ pub(super) static KIND: MotionKind = MotionKind {
     name: "circle",
     about: "a coordinated turn, to the right for a positive bank",
     keys: &[
-        Key { name: "bank", takes: Takes::Scalar(Kind::ANGLE), default: None, about: "the steady bank, between -90 and 90 deg" },
-        Key { name: "speed", takes: Takes::Scalar(Kind::SPEED), default: None, about: "along the path" },
-        Key { name: "entry", takes: Takes::Duration, default: Some("2 s"), about: "how long rolling in takes, and rolling out" },
+        Key {
+            name: "bank",
+            takes: Takes::Scalar(Kind::ANGLE),
+            default: None,
+            about: "the steady bank, between -90 and 90 deg",
+        },
+        Key {
+            name: "speed",
+            takes: Takes::Scalar(Kind::SPEED.signed(Sign::Positive)),
+            default: None,
+            about: "along the path",
+        },
+        Key {
+            name: "entry",
+            takes: Takes::Duration,
+            default: Some("2 s"),
+            about: "how long rolling in takes, and rolling out",
+        },
     ],
     build,
 };
@@ -36,18 +51,23 @@ struct Circle {
 }
 
 fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError> {
-    let need = |key| values.scalar(key).ok_or_else(|| KeyError::new("kind", format!("`circle` needs `{key}`")));
-    let (bank, speed) = (need("bank")?, need("speed")?);
+    let (Some(bank), Some(speed)) = (values.scalar("bank"), values.scalar("speed")) else {
+        return Err(KeyError::new(
+            "kind",
+            "`circle` needs both `bank`, such as \"25 deg\", and `speed`, such as \"15 m/s\"",
+        ));
+    };
     let entry = values.time("entry").unwrap_or_default();
     if bank.abs() >= FRAC_PI_2 {
-        let degrees = bank.to_degrees();
-        return Err(KeyError::new("bank", format!("a coordinated turn has a bank between -90 and 90 deg, not {degrees} deg")));
-    }
-    if speed <= 0.0 {
-        return Err(KeyError::new("speed", "a turn needs a speed above 0"));
+        let given = text_scalar(bank, "deg");
+        return Err(KeyError::new(
+            "bank",
+            format!("a coordinated turn has a bank between -90 and 90 deg, not {given}"),
+        ));
     }
     if entry + entry > context.duration {
-        let message = format!("rolling in and out over {entry} each does not fit in {}", context.duration);
+        let message =
+            format!("rolling in and out over {entry} each does not fit in the motion's {}", context.duration);
         return Err(KeyError::new("entry", message));
     }
     Ok(Box::new(Circle {
@@ -145,7 +165,10 @@ mod tests {
             let now = motion.at(start, SimTime(ms * 1_000_000).exact_seconds());
             let force = now.attitude.inverse().apply(now.acceleration - Vector::new(0.0, 0.0, 9.80665));
             let bank = Euler::from_quat(now.attitude.q).roll;
-            assert!(force.v.x.abs() < 1e-12 && force.v.y.abs() < 1e-12, "no side force at {ms} ms: {force:?}");
+            assert!(
+                force.v.x.abs() < 1e-12 && force.v.y.abs() < 1e-12,
+                "no side force at {ms} ms: {force:?}"
+            );
             assert!((force.v.z + 9.80665 / libm::cos(bank)).abs() < 1e-12);
         }
     }

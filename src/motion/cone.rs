@@ -8,7 +8,7 @@ use super::{Kinematics, Motion, MotionKind};
 use crate::double::Double;
 use crate::geometry::{Attitude, Vector};
 use crate::keys::{Key, KeyError, Takes};
-use crate::quantity::Kind;
+use crate::quantity::{Kind, Sign};
 use glam::DQuat;
 use std::f64::consts::TAU;
 
@@ -17,14 +17,21 @@ pub(super) static KIND: MotionKind = MotionKind {
     about: "coning: the x axis goes round a cone of a half-angle at a frequency",
     keys: &[
         Key { name: "half_angle", takes: Takes::Scalar(Kind::ANGLE), default: None, about: "of the cone" },
-        Key { name: "frequency", takes: Takes::Scalar(Kind::FREQUENCY), default: None, about: "turns round the cone a second" },
+        Key {
+            name: "frequency",
+            takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::NonNegative)),
+            default: None,
+            about: "turns round the cone a second",
+        },
     ],
     build: |values, context| {
-        let need = |key| values.double(key).ok_or_else(|| KeyError::new("kind", format!("`cone` needs `{key}`")));
-        let (half_angle, frequency) = (need("half_angle")?, need("frequency")?);
-        if frequency.hi < 0.0 {
-            return Err(KeyError::new("frequency", "a frequency is not negative; a negative `half_angle` starts on the other side"));
-        }
+        let (Some(half_angle), Some(frequency)) = (values.double("half_angle"), values.double("frequency"))
+        else {
+            return Err(KeyError::new(
+                "kind",
+                "`cone` needs both `half_angle`, such as \"5 deg\", and `frequency`, such as \"2 Hz\"",
+            ));
+        };
         Ok(Box::new(Cone::new(half_angle, frequency, context.body_sign)))
     },
 };

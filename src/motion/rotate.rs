@@ -20,9 +20,24 @@ pub(super) static KIND: MotionKind = MotionKind {
             default: None,
             about: "about the body's x, y and z",
         },
-        Key { name: "roll", takes: Takes::Scalar(Kind::ANGULAR_RATE), default: None, about: "about the body's x alone" },
-        Key { name: "pitch", takes: Takes::Scalar(Kind::ANGULAR_RATE), default: None, about: "about the body's y alone" },
-        Key { name: "yaw", takes: Takes::Scalar(Kind::ANGULAR_RATE), default: None, about: "about the body's z alone" },
+        Key {
+            name: "roll",
+            takes: Takes::Scalar(Kind::ANGULAR_RATE),
+            default: None,
+            about: "about the body's x alone",
+        },
+        Key {
+            name: "pitch",
+            takes: Takes::Scalar(Kind::ANGULAR_RATE),
+            default: None,
+            about: "about the body's y alone",
+        },
+        Key {
+            name: "yaw",
+            takes: Takes::Scalar(Kind::ANGULAR_RATE),
+            default: None,
+            about: "about the body's z alone",
+        },
     ],
     build,
 };
@@ -36,7 +51,8 @@ struct Rotate {
 }
 
 fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError> {
-    let short: Vec<_> = ["roll", "pitch", "yaw"].into_iter().enumerate().filter(|(_, key)| values.has(key)).collect();
+    let short: Vec<_> =
+        ["roll", "pitch", "yaw"].into_iter().enumerate().filter(|(_, key)| values.has(key)).collect();
     match (values.triple("angular_rate"), &short[..]) {
         (Some(rate), []) => Ok(Box::new(Rotate::new(rate))),
         (None, &[(axis, key)]) => {
@@ -45,12 +61,14 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
             rate[axis] = values.double(key).unwrap_or_default() * Double::from(sign);
             Ok(Box::new(Rotate::new(rate)))
         }
-        (None, []) => {
-            Err(KeyError::new("kind", "`rotate` needs `angular_rate`, or one of `roll`, `pitch` and `yaw`, such as roll = \"30 deg/s\""))
-        }
-        (_, [.., (_, key)]) => {
-            Err(KeyError::new(key, "`rotate` takes one of `angular_rate`, `roll`, `pitch` and `yaw`; for several axes at once write them as `angular_rate`"))
-        }
+        (None, []) => Err(KeyError::new(
+            "kind",
+            "`rotate` needs `angular_rate`, or one of `roll`, `pitch` and `yaw`, such as roll = \"30 deg/s\"",
+        )),
+        (_, [.., (_, key)]) => Err(KeyError::new(
+            key,
+            "`rotate` takes one of `angular_rate`, `roll`, `pitch` and `yaw`; for several axes at once write them as `angular_rate`",
+        )),
     }
 }
 
@@ -110,7 +128,8 @@ mod tests {
     fn a_whole_number_of_turns_comes_back_within_a_billionth_of_a_degree() {
         // 2000 deg/s for an hour is 20 000 turns exactly; the rate is the decimal, not its nearest double.
         let rate = Double::from(2000.0) * Double::PI_OVER_180;
-        let end = Rotate::new([Double::from(0.0), rate, Double::from(0.0)]).at(Attitude::IDENTITY, Double::from(3600.0));
+        let end = Rotate::new([Double::from(0.0), rate, Double::from(0.0)])
+            .at(Attitude::IDENTITY, Double::from(3600.0));
         assert!(angle_between(end.attitude.q, DQuat::IDENTITY).to_degrees() < 1e-12);
     }
 }

@@ -13,10 +13,7 @@ pub(super) struct Ratio {
 
 impl Ratio {
     /// One.
-    pub const ONE: Ratio = Ratio {
-        numerator: 1,
-        denominator: 1,
-    };
+    pub const ONE: Ratio = Ratio { numerator: 1, denominator: 1 };
 
     /// `numerator / denominator`, unless the latter is 0 or one of them is `i128::MIN`.
     pub fn new(numerator: i128, denominator: i128) -> Option<Self> {
@@ -28,10 +25,7 @@ impl Ratio {
             (a, b) = (b, a % b);
         }
         let divisor = a * denominator.signum();
-        Some(Self {
-            numerator: numerator / divisor,
-            denominator: denominator / divisor,
-        })
+        Some(Self { numerator: numerator / divisor, denominator: denominator / divisor })
     }
 
     /// A decimal literal with ASCII signs; `None` where its terms would be too long.
@@ -51,11 +45,7 @@ impl Ratio {
         }
         let power = power.checked_sub(i32::try_from(fraction.len()).ok()?)?;
         let tens = 10_i128.checked_pow(power.unsigned_abs())?;
-        if power < 0 {
-            Self::new(digits, tens)
-        } else {
-            Self::new(digits.checked_mul(tens)?, 1)
-        }
+        if power < 0 { Self::new(digits, tens) } else { Self::new(digits.checked_mul(tens)?, 1) }
     }
 
     /// The product, unless its terms are too long.
@@ -122,10 +112,7 @@ const FINEST: i128 = 1_000_000_000;
 pub fn rate(text: &str) -> Result<(u64, u64), QuantityError> {
     let kind = Kind::RATE;
     let quantity = kind.quantity_or(text, |quantity| {
-        let period = quantity
-            .notes
-            .exact
-            .filter(|_| quantity.dimension == Kind::TIME.dimensions()[0]);
+        let period = quantity.notes.exact.filter(|_| quantity.dimension == Kind::TIME.dimensions()[0]);
         let (numerator, denominator) = period.and_then(Ratio::inverse)?.terms();
         Some(if denominator == 1 {
             format!("is a time, but a rate is needed: write \"{numerator} Hz\"")
@@ -144,9 +131,7 @@ pub fn rate(text: &str) -> Result<(u64, u64), QuantityError> {
         return refuse("is above 1 MHz, the highest rate there is");
     }
     match quantity.notes.exact.map(Ratio::terms) {
-        Some((numerator, denominator)) if denominator <= FINEST => {
-            Ok((numerator as u64, denominator as u64))
-        }
+        Some((numerator, denominator)) if denominator <= FINEST => Ok((numerator as u64, denominator as u64)),
         _ => refuse(too_fine),
     }
 }

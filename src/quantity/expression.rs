@@ -42,11 +42,7 @@ impl<'a> Reader<'a> {
             self.take(|_| true);
             self.skip_space();
             let factor = self.factor(depth)?;
-            let next = if divide {
-                total.over(factor)
-            } else {
-                total.times(factor)
-            };
+            let next = if divide { total.over(factor) } else { total.times(factor) };
             total = self.bearable(next, start)?;
         }
     }
@@ -56,10 +52,7 @@ impl<'a> Reader<'a> {
         match scale.filter(usable) {
             Some(scale) => Ok(scale),
             None => self.error(
-                format!(
-                    "`{}` has a power that no unit has",
-                    &self.text[start..self.at]
-                ),
+                format!("`{}` has a power that no unit has", &self.text[start..self.at]),
                 start..self.at,
             ),
         }
@@ -150,10 +143,7 @@ impl<'a> Reader<'a> {
         if self.take(|c| c == '^').is_none() {
             let negative = self.take(|c| c == '⁻').is_some();
             let mut digits = Vec::new();
-            while let Some(digit) = self
-                .peek()
-                .and_then(|c| SUPERSCRIPTS.iter().position(|s| *s == c))
-            {
+            while let Some(digit) = self.peek().and_then(|c| SUPERSCRIPTS.iter().position(|s| *s == c)) {
                 self.take(|_| true);
                 digits.push(digit as i8);
             }

@@ -49,11 +49,7 @@ impl Kind {
 
     /// `an angular rate`.
     pub(super) fn with_article(&self) -> String {
-        let article = if self.name.starts_with(['a', 'e', 'i', 'o', 'u']) {
-            "an"
-        } else {
-            "a"
-        };
+        let article = if self.name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
         format!("{article} {}", self.name)
     }
 
@@ -150,10 +146,7 @@ impl Kind {
             if whole && (1.0..=64.0).contains(&value.hi) {
                 return Ok(Resolution::Bits(value.hi as u32));
             }
-            let message = format!(
-                "`{}` is not a whole number of bits from 1 to 64",
-                quantity.text
-            );
+            let message = format!("`{}` is not a whole number of bits from 1 to 64", quantity.text);
             return Err(QuantityError::new(message, quantity.notes.number));
         }
         let inverse = self.dimensions.get(1) == Some(&quantity.dimension);
@@ -168,23 +161,14 @@ impl Kind {
     /// A vector stands where one value is needed.
     pub(super) fn one_needed(&self, quantity: &Quantity) -> QuantityError {
         let (text, name) = (&quantity.text, self.with_article());
-        let message = format!(
-            "`{text}` is a vector, but {name} of one value is needed, such as \"{}\"",
-            self.example
-        );
+        let message =
+            format!("`{text}` is a vector, but {name} of one value is needed, such as \"{}\"", self.example);
         QuantityError::new(message, quantity.notes.number.clone())
     }
 
     fn unit_missing(&self, number: &str) -> String {
-        let offers: Vec<_> = self
-            .units
-            .iter()
-            .map(|unit| format!("\"{number} {unit}\""))
-            .collect();
-        format!(
-            "a unit is missing in `{number}`: write {}",
-            offers.join(" or ")
-        )
+        let offers: Vec<_> = self.units.iter().map(|unit| format!("\"{number} {unit}\"")).collect();
+        format!("a unit is missing in `{number}`: write {}", offers.join(" or "))
     }
 
     fn check_sign(&self, quantity: &Quantity) -> Result<(), QuantityError> {
@@ -211,10 +195,7 @@ impl Kind {
 
 /// `is an angle`, or `is in rad/s^5`.
 fn describe(dimension: Dimension) -> String {
-    match Kind::ALL
-        .iter()
-        .find(|kind| kind.dimensions.contains(&dimension))
-    {
+    match Kind::ALL.iter().find(|kind| kind.dimensions.contains(&dimension)) {
         Some(kind) => format!("is {}", kind.with_article()),
         None => format!("is in {dimension}"),
     }

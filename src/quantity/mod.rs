@@ -38,10 +38,7 @@ pub struct QuantityError {
 
 impl QuantityError {
     fn new(message: impl Into<String>, span: Range<usize>) -> Self {
-        Self {
-            message: message.into(),
-            span,
-        }
+        Self { message: message.into(), span }
     }
 
     /// Where the offending part begins, in bytes from the start of the text as given.

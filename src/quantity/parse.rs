@@ -29,17 +29,9 @@ pub(super) fn quantity(text: &str, kind: Option<&Kind>) -> Result<Quantity, Quan
     let number = start..reader.at;
     reader.skip_space();
     let first = reader.at;
-    let scale = if reader.rest().is_empty() {
-        Scale::ONE
-    } else {
-        reader.unit_to_the_end()?
-    };
+    let scale = if reader.rest().is_empty() { Scale::ONE } else { reader.unit_to_the_end()? };
     let text = text.trim();
-    let unit = if first == reader.text.len() {
-        number.end..number.end
-    } else {
-        first..start + text.len()
-    };
+    let unit = if first == reader.text.len() { number.end..number.end } else { first..start + text.len() };
     let too_large = || QuantityError::new(format!("`{text}` is too large"), number.clone());
     let scaled: Vec<Double> = numbers.iter().map(|number| number.scaled(scale)).collect();
     if !scaled.iter().all(|value| value.is_finite()) {
@@ -89,11 +81,7 @@ impl Number {
             Some((1, 1)) => self.value,
             Some((top, bottom)) => {
                 let top = self.value * super::exact::whole(top);
-                if bottom == 1 {
-                    top
-                } else {
-                    top / super::exact::whole(bottom)
-                }
+                if bottom == 1 { top } else { top / super::exact::whole(bottom) }
             }
             None => self.value * scale.factor,
         }
@@ -148,14 +136,10 @@ impl<'a> Reader<'a> {
     /// The next character is no good; `hint` is what to do about it.
     pub(super) fn unexpected<T>(&self, hint: &str) -> Result<T, QuantityError> {
         match self.peek() {
-            Some(next) => self.error(
-                format!("`{next}` is unexpected here{hint}"),
-                self.at..self.at + next.len_utf8(),
-            ),
-            None => self.error(
-                format!("something is missing at the end{hint}"),
-                self.at..self.at,
-            ),
+            Some(next) => {
+                self.error(format!("`{next}` is unexpected here{hint}"), self.at..self.at + next.len_utf8())
+            }
+            None => self.error(format!("something is missing at the end{hint}"), self.at..self.at),
         }
     }
 
@@ -180,8 +164,7 @@ impl<'a> Reader<'a> {
                 Some(',') => self.at += 1,
                 Some(']') => {}
                 Some(letter) if starts_unit(letter) => {
-                    return self
-                        .unexpected(": one unit follows the bracket, as in \"[1, 2, 3] deg\"");
+                    return self.unexpected(": one unit follows the bracket, as in \"[1, 2, 3] deg\"");
                 }
                 _ => return self.unexpected(": a vector is written as in \"[1, 2, 3] deg\""),
             }
@@ -250,10 +233,7 @@ impl<'a> Reader<'a> {
             let message = format!("`{}` is too large", &self.text[start..self.at]);
             return self.error(message, start..self.at);
         };
-        Ok(Number {
-            value,
-            exact: Ratio::from_decimal(&literal),
-        })
+        Ok(Number { value, exact: Ratio::from_decimal(&literal) })
     }
 
     /// There should have been digits.
@@ -266,18 +246,10 @@ impl<'a> Reader<'a> {
         }
         self.at = start;
         match self.peek() {
-            None => self.error(
-                format!("a value is missing: write one such as \"{example}\""),
-                start..start,
-            ),
-            Some('±') => {
-                self.unexpected(&format!(": write the number alone, as in \"{example}\""))
-            }
+            None => self.error(format!("a value is missing: write one such as \"{example}\""), start..start),
+            Some('±') => self.unexpected(&format!(": write the number alone, as in \"{example}\"")),
             Some(letter) if starts_unit(letter) => self.error(
-                format!(
-                    "a number is missing before `{}`, as in \"{example}\"",
-                    self.rest().trim()
-                ),
+                format!("a number is missing before `{}`, as in \"{example}\"", self.rest().trim()),
                 start..self.text.trim_end().len(),
             ),
             Some(_) => self.unexpected(&format!(": a number is needed, as in \"{example}\"")),

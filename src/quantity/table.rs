@@ -20,28 +20,18 @@ pub(super) const BITS: Dimension = Dimension::NONE.with(Base::Bit, 2);
 /// Every way to give a step: per count, counts per unit, the step alone, bits.
 const GYRO_STEPS: &[Dimension] = &[
     ANGULAR_RATE.with(Base::Count, -2),
-    ANGLE
-        .with(Base::Angle, -2)
-        .with(Base::Time, 2)
-        .with(Base::Count, 2),
+    ANGLE.with(Base::Angle, -2).with(Base::Time, 2).with(Base::Count, 2),
     ANGULAR_RATE,
     BITS,
 ];
 const ACCEL_STEPS: &[Dimension] = &[
     ACCELERATION.with(Base::Count, -2),
-    LENGTH
-        .with(Base::Length, -2)
-        .with(Base::Time, 4)
-        .with(Base::Count, 2),
+    LENGTH.with(Base::Length, -2).with(Base::Time, 4).with(Base::Count, 2),
     ACCELERATION,
     BITS,
 ];
-const MAG_STEPS: &[Dimension] = &[
-    FIELD.with(Base::Count, -2),
-    FIELD.with(Base::Field, -2).with(Base::Count, 2),
-    FIELD,
-    BITS,
-];
+const MAG_STEPS: &[Dimension] =
+    &[FIELD.with(Base::Count, -2), FIELD.with(Base::Field, -2).with(Base::Count, 2), FIELD, BITS];
 
 const fn kind(
     name: &'static str,
@@ -49,95 +39,48 @@ const fn kind(
     example: &'static str,
     units: &'static [&'static str],
 ) -> Kind {
-    Kind {
-        name,
-        dimensions,
-        example,
-        units,
-        sign: Sign::Any,
-    }
+    Kind { name, dimensions, example, units, sign: Sign::Any }
 }
 
 impl Kind {
     /// An angle, in rad.
     pub const ANGLE: Kind = kind("angle", &[ANGLE], "20 deg", &["rad", "deg"]);
     /// A body's angular rate, in rad/s.
-    pub const ANGULAR_RATE: Kind = kind(
-        "angular rate",
-        &[ANGULAR_RATE],
-        "20 deg/s",
-        &["rad/s", "deg/s"],
-    );
+    pub const ANGULAR_RATE: Kind = kind("angular rate", &[ANGULAR_RATE], "20 deg/s", &["rad/s", "deg/s"]);
     /// An acceleration, in m/s².
-    pub const ACCELERATION: Kind = kind(
-        "acceleration",
-        &[ACCELERATION],
-        "9.8 m/s^2",
-        &["m/s^2", "g"],
-    );
+    pub const ACCELERATION: Kind = kind("acceleration", &[ACCELERATION], "9.8 m/s^2", &["m/s^2", "g"]);
     /// A magnetic field, in µT.
     pub const FIELD: Kind = kind("magnetic field", &[FIELD], "50 uT", &["uT", "G"]);
     /// A time, in s. See [`duration_ns`](super::duration_ns) for whole nanoseconds.
-    pub const TIME: Kind = kind(
-        "time",
-        &[Dimension::NONE.with(Base::Time, 2)],
-        "5 s",
-        &["s", "ms"],
-    );
+    pub const TIME: Kind = kind("time", &[Dimension::NONE.with(Base::Time, 2)], "5 s", &["s", "ms"]);
     /// A sensor's output rate, in Hz. See [`rate`](super::rate) for the exact fraction.
-    pub const RATE: Kind =
-        kind("rate", &[FREQUENCY], "100 Hz", &["Hz", "kHz"]).signed(Sign::Positive);
+    pub const RATE: Kind = kind("rate", &[FREQUENCY], "100 Hz", &["Hz", "kHz"]).signed(Sign::Positive);
     /// A frequency of anything else, in Hz.
     pub const FREQUENCY: Kind = kind("frequency", &[FREQUENCY], "2 Hz", &["Hz", "kHz"]);
     /// A length, in m.
     pub const LENGTH: Kind = kind("length", &[LENGTH], "0.1 m", &["m", "mm"]);
     /// A speed, in m/s.
-    pub const SPEED: Kind = kind(
-        "speed",
-        &[LENGTH.with(Base::Time, -2)],
-        "15 m/s",
-        &["m/s", "km/h"],
-    );
+    pub const SPEED: Kind = kind("speed", &[LENGTH.with(Base::Time, -2)], "15 m/s", &["m/s", "km/h"]);
     /// A gyro's one-sided noise density, in rad/s/√Hz; 0 or above.
-    pub const GYRO_DENSITY: Kind = kind(
-        "gyro noise density",
-        &[GYRO_DENSITY],
-        "0.01 deg/s/rtHz",
-        &["rad/s/rtHz", "deg/s/rtHz"],
-    )
-    .signed(Sign::NonNegative);
+    pub const GYRO_DENSITY: Kind =
+        kind("gyro noise density", &[GYRO_DENSITY], "0.01 deg/s/rtHz", &["rad/s/rtHz", "deg/s/rtHz"])
+            .signed(Sign::NonNegative);
     /// An accelerometer's one-sided noise density, in m/s²/√Hz; 0 or above.
-    pub const ACCEL_DENSITY: Kind = kind(
-        "accelerometer noise density",
-        &[ACCEL_DENSITY],
-        "300 ug/rtHz",
-        &["m/s^2/rtHz", "ug/rtHz"],
-    )
-    .signed(Sign::NonNegative);
+    pub const ACCEL_DENSITY: Kind =
+        kind("accelerometer noise density", &[ACCEL_DENSITY], "300 ug/rtHz", &["m/s^2/rtHz", "ug/rtHz"])
+            .signed(Sign::NonNegative);
     /// A magnetometer's one-sided noise density, in µT/√Hz; 0 or above.
-    pub const MAG_DENSITY: Kind = kind(
-        "magnetometer noise density",
-        &[MAG_DENSITY],
-        "0.1 uT/rtHz",
-        &["uT/rtHz", "nT/rtHz"],
-    )
-    .signed(Sign::NonNegative);
+    pub const MAG_DENSITY: Kind =
+        kind("magnetometer noise density", &[MAG_DENSITY], "0.1 uT/rtHz", &["uT/rtHz", "nT/rtHz"])
+            .signed(Sign::NonNegative);
     /// An angle random walk, in rad/√s (the dimension of a gyro's density); 0 or above.
-    pub const ANGLE_RANDOM_WALK: Kind = kind(
-        "angle random walk",
-        &[GYRO_DENSITY],
-        "0.34 deg/rth",
-        &["rad/rts", "deg/rth"],
-    )
-    .signed(Sign::NonNegative);
+    pub const ANGLE_RANDOM_WALK: Kind =
+        kind("angle random walk", &[GYRO_DENSITY], "0.34 deg/rth", &["rad/rts", "deg/rth"])
+            .signed(Sign::NonNegative);
     /// A velocity random walk, in m/s/√s (the dimension of a density); 0 or above.
-    pub const VELOCITY_RANDOM_WALK: Kind = kind(
-        "velocity random walk",
-        &[ACCEL_DENSITY],
-        "0.037 m/s/rth",
-        &["m/s/rts", "m/s/rth"],
-    )
-    .signed(Sign::NonNegative);
+    pub const VELOCITY_RANDOM_WALK: Kind =
+        kind("velocity random walk", &[ACCEL_DENSITY], "0.037 m/s/rth", &["m/s/rts", "m/s/rth"])
+            .signed(Sign::NonNegative);
     /// A gyro's noise variance per sample, in rad²/s²; 0 or above.
     pub const GYRO_VARIANCE: Kind = kind(
         "gyro noise variance",
@@ -155,13 +98,9 @@ impl Kind {
     )
     .signed(Sign::NonNegative);
     /// A magnetometer's noise variance per sample, in µT²; 0 or above.
-    pub const MAG_VARIANCE: Kind = kind(
-        "magnetometer noise variance",
-        &[FIELD.with(Base::Field, 4)],
-        "0.04 uT^2",
-        &["uT^2", "mG^2"],
-    )
-    .signed(Sign::NonNegative);
+    pub const MAG_VARIANCE: Kind =
+        kind("magnetometer noise variance", &[FIELD.with(Base::Field, 4)], "0.04 uT^2", &["uT^2", "mG^2"])
+            .signed(Sign::NonNegative);
     /// A random walk of a gyro's bias, in rad/s/√s; 0 or above.
     pub const GYRO_WALK: Kind = kind(
         "gyro bias random walk",
@@ -187,40 +126,24 @@ impl Kind {
     )
     .signed(Sign::NonNegative);
     /// A gyro's step, see [`Self::resolution`]: rad/s per count, its inverse, rad/s, or bits.
-    pub const GYRO_RESOLUTION: Kind = kind(
-        "gyro resolution",
-        GYRO_STEPS,
-        "131 LSB/(deg/s)",
-        &["rad/s/LSB", "LSB/(deg/s)", "bit"],
-    )
-    .signed(Sign::Positive);
+    pub const GYRO_RESOLUTION: Kind =
+        kind("gyro resolution", GYRO_STEPS, "131 LSB/(deg/s)", &["rad/s/LSB", "LSB/(deg/s)", "bit"])
+            .signed(Sign::Positive);
     /// An accelerometer's step, see [`Self::resolution`]: m/s² per count, its inverse, m/s², bits.
-    pub const ACCEL_RESOLUTION: Kind = kind(
-        "accelerometer resolution",
-        ACCEL_STEPS,
-        "2048 LSB/g",
-        &["m/s^2/LSB", "LSB/g", "bit"],
-    )
-    .signed(Sign::Positive);
+    pub const ACCEL_RESOLUTION: Kind =
+        kind("accelerometer resolution", ACCEL_STEPS, "2048 LSB/g", &["m/s^2/LSB", "LSB/g", "bit"])
+            .signed(Sign::Positive);
     /// A magnetometer's step, see [`Self::resolution`]: µT per count, its inverse, µT, or bits.
-    pub const MAG_RESOLUTION: Kind = kind(
-        "magnetometer resolution",
-        MAG_STEPS,
-        "0.15 uT/LSB",
-        &["uT/LSB", "LSB/G", "bit"],
-    )
-    .signed(Sign::Positive);
+    pub const MAG_RESOLUTION: Kind =
+        kind("magnetometer resolution", MAG_STEPS, "0.15 uT/LSB", &["uT/LSB", "LSB/G", "bit"])
+            .signed(Sign::Positive);
     /// A plain number, of which `%` and `ppm` are parts.
     pub const RATIO: Kind = kind("ratio", &[Dimension::NONE], "0.5 %", &["%", "ppm"]);
     /// An absolute temperature, in °C; `K` counts from absolute zero.
     pub const TEMPERATURE: Kind = kind("temperature", &[TEMPERATURE], "25 degC", &["degC", "K"]);
     /// A difference of temperatures, in K; a °C is the same step.
-    pub const TEMPERATURE_DIFFERENCE: Kind = kind(
-        "temperature difference",
-        &[TEMPERATURE],
-        "15 K",
-        &["K", "degC"],
-    );
+    pub const TEMPERATURE_DIFFERENCE: Kind =
+        kind("temperature difference", &[TEMPERATURE], "15 K", &["K", "degC"]);
     /// A gyro bias per kelvin, in rad/s/K.
     pub const GYRO_PER_KELVIN: Kind = kind(
         "gyro bias per kelvin",
@@ -275,10 +198,7 @@ impl Kind {
     /// A pressure, in Pa.
     pub const PRESSURE: Kind = kind(
         "pressure",
-        &[Dimension::NONE
-            .with(Base::Mass, 2)
-            .with(Base::Length, -2)
-            .with(Base::Time, -4)],
+        &[Dimension::NONE.with(Base::Mass, 2).with(Base::Length, -2).with(Base::Time, -4)],
         "1013 hPa",
         &["Pa", "hPa"],
     );

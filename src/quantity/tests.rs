@@ -128,13 +128,8 @@ fn a_datasheet_value_is_read_as_it_is_written() {
             assert!(read.is_err(), "{text}");
             continue;
         }
-        let read = read
-            .unwrap_or_else(|error| panic!("{text}: {error}"))
-            .to_f64();
-        assert!(
-            (read - value).abs() <= 4e-16 * value.abs(),
-            "{text}: {read} for {value}"
-        );
+        let read = read.unwrap_or_else(|error| panic!("{text}: {error}")).to_f64();
+        assert!((read - value).abs() <= 4e-16 * value.abs(), "{text}: {read} for {value}");
     }
 }
 
@@ -164,15 +159,9 @@ fn inside_units_are_the_nearest_f64_of_their_decimals() {
 #[test]
 fn a_vector_has_three_values_and_a_scalar_fills_all() {
     let read = |kind: Kind, text| kind.vector(text).map(|v| v.map(Double::to_f64));
-    assert_eq!(
-        read(Kind::ACCELERATION, "[0.7, 0.33, -4.04] mm/s^2"),
-        Ok([0.0007, 0.00033, -0.00404])
-    );
+    assert_eq!(read(Kind::ACCELERATION, "[0.7, 0.33, -4.04] mm/s^2"), Ok([0.0007, 0.00033, -0.00404]));
     assert_eq!(read(Kind::ANGLE, "[0, 0, 0] deg"), Ok([0.0; 3]));
-    assert_eq!(
-        read(Kind::FIELD, "[ 3.2,15.0 , −50.3 ]uT"),
-        Ok([3.2, 15.0, -50.3])
-    );
+    assert_eq!(read(Kind::FIELD, "[ 3.2,15.0 , −50.3 ]uT"), Ok([3.2, 15.0, -50.3]));
     assert_eq!(read(Kind::FIELD, "[1, 2, 3,] uT"), Ok([1.0, 2.0, 3.0]));
     assert_eq!(read(Kind::RATIO, "[1, 2, 1/2]"), Ok([1.0, 2.0, 0.5]));
     assert_eq!(read(Kind::FIELD, "7 uT"), Ok([7.0; 3]));
@@ -182,190 +171,60 @@ fn a_vector_has_three_values_and_a_scalar_fills_all() {
 #[test]
 fn a_refusal_says_what_is_wrong_where_and_what_would_be_right() {
     for (kind, text, message, part) in [
-        (
-            Kind::ANGULAR_RATE,
-            "20",
-            "a unit is missing in `20`: write \"20 rad/s\" or \"20 deg/s\"",
-            "20",
-        ),
-        (
-            Kind::ANGULAR_RATE,
-            " [1, 2, 3]",
-            "\"[1, 2, 3] deg/s\"",
-            "[1, 2, 3]",
-        ),
+        (Kind::ANGULAR_RATE, "20", "a unit is missing in `20`: write \"20 rad/s\" or \"20 deg/s\"", "20"),
+        (Kind::ANGULAR_RATE, " [1, 2, 3]", "\"[1, 2, 3] deg/s\"", "[1, 2, 3]"),
         (
             Kind::ANGULAR_RATE,
             "20 deg",
             "`20 deg` is an angle, but an angular rate is needed, such as \"20 deg/s\"",
             "deg",
         ),
-        (
-            Kind::ANGULAR_RATE,
-            "20 Hz",
-            "is a frequency, but an angular rate",
-            "Hz",
-        ),
-        (
-            Kind::FREQUENCY,
-            "20 rad/s",
-            "is an angular rate, but a frequency",
-            "rad/s",
-        ),
-        (
-            Kind::ANGULAR_RATE,
-            "20 deg/s^4",
-            "is in rad/s^4, but",
-            "deg/s^4",
-        ),
-        (
-            Kind::GYRO_WALK,
-            "1 deg/s/√Hz",
-            "is a gyro noise density, but a gyro bias random walk",
-            "deg/s/√Hz",
-        ),
-        (
-            Kind::RATIO,
-            "5 deg",
-            "is an angle, but a ratio is needed",
-            "deg",
-        ),
+        (Kind::ANGULAR_RATE, "20 Hz", "is a frequency, but an angular rate", "Hz"),
+        (Kind::FREQUENCY, "20 rad/s", "is an angular rate, but a frequency", "rad/s"),
+        (Kind::ANGULAR_RATE, "20 deg/s^4", "is in rad/s^4, but", "deg/s^4"),
+        (Kind::GYRO_WALK, "1 deg/s/√Hz", "is a gyro noise density, but a gyro bias random walk", "deg/s/√Hz"),
+        (Kind::RATIO, "5 deg", "is an angle, but a ratio is needed", "deg"),
         (Kind::ANGULAR_RATE, "5 %", "is a ratio, but", "%"),
-        (
-            Kind::ANGULAR_RATE,
-            "20 degs",
-            "unknown unit `degs`: did you mean `deg/s`?",
-            "degs",
-        ),
+        (Kind::ANGULAR_RATE, "20 degs", "unknown unit `degs`: did you mean `deg/s`?", "degs"),
         (Kind::ANGULAR_RATE, "20 Deg/s", "did you mean `deg`?", "Deg"),
-        (
-            Kind::ANGULAR_RATE,
-            "20 rad/sed",
-            "unknown unit `sed`: did you mean `sec`?",
-            "sed",
-        ),
-        (
-            Kind::ACCELERATION,
-            "1 m/s2",
-            "unknown unit `s2`: did you mean `s^2`?",
-            "s2",
-        ),
-        (
-            Kind::ACCELERATION,
-            "1 mps2",
-            "did you mean `m/s^2`?",
-            "mps2",
-        ),
+        (Kind::ANGULAR_RATE, "20 rad/sed", "unknown unit `sed`: did you mean `sec`?", "sed"),
+        (Kind::ACCELERATION, "1 m/s2", "unknown unit `s2`: did you mean `s^2`?", "s2"),
+        (Kind::ACCELERATION, "1 mps2", "did you mean `m/s^2`?", "mps2"),
         (Kind::FREQUENCY, "1 hz", "did you mean `Hz`?", "hz"),
         (Kind::FREQUENCY, "1 khz", "did you mean `kHz`?", "khz"),
-        (
-            Kind::FIELD,
-            "1 V",
-            "unknown unit `V`: a magnetic field is needed, such as \"50 uT\"",
-            "V",
-        ),
+        (Kind::FIELD, "1 V", "unknown unit `V`: a magnetic field is needed, such as \"50 uT\"", "V"),
         (Kind::FIELD, "1 kg", "unknown unit `kg`", "kg"),
         (Kind::TEMPERATURE, "25 C", "did you mean `degC`?", "C"),
-        (
-            Kind::FIELD,
-            "",
-            "a value is missing: write one such as \"50 uT\"",
-            "",
-        ),
-        (
-            Kind::FIELD,
-            "uT",
-            "a number is missing before `uT`, as in \"50 uT\"",
-            "uT",
-        ),
-        (
-            Kind::FIELD,
-            "√Hz ",
-            "a number is missing before `√Hz`",
-            "√Hz",
-        ),
+        (Kind::FIELD, "", "a value is missing: write one such as \"50 uT\"", ""),
+        (Kind::FIELD, "uT", "a number is missing before `uT`, as in \"50 uT\"", "uT"),
+        (Kind::FIELD, "√Hz ", "a number is missing before `√Hz`", "√Hz"),
         (Kind::FIELD, "nan uT", "`nan` is not a finite number", "nan"),
-        (
-            Kind::FIELD,
-            "[0, -inf, 0] uT",
-            "`-inf` is not a finite number",
-            "-inf",
-        ),
+        (Kind::FIELD, "[0, -inf, 0] uT", "`-inf` is not a finite number", "-inf"),
         (Kind::FIELD, "1e999 uT", "`1e999` is too large", "1e999"),
         (Kind::FIELD, "1e305 T", "`1e305 T` is too large", "1e305"),
-        (
-            Kind::FIELD,
-            "±5 uT",
-            "`±` is unexpected here: write the number alone",
-            "±",
-        ),
+        (Kind::FIELD, "±5 uT", "`±` is unexpected here: write the number alone", "±"),
         (Kind::FIELD, "1,5 uT", "decimals have a point", ","),
         (Kind::FIELD, "1.5.2 uT", "`.` is unexpected here", "."),
-        (
-            Kind::FIELD,
-            "- uT",
-            "`-` is unexpected here: a number is needed",
-            "-",
-        ),
-        (
-            Kind::FIELD,
-            "5 uT please",
-            "units are joined by `*` or `/`",
-            "p",
-        ),
+        (Kind::FIELD, "- uT", "`-` is unexpected here: a number is needed", "-"),
+        (Kind::FIELD, "5 uT please", "units are joined by `*` or `/`", "p"),
         (Kind::FIELD, "5 uT)", "`)` is unexpected here", ")"),
         (Kind::FIELD, "5 (uT", "this parenthesis is not closed", "("),
         (Kind::FIELD, "5 uT/", "something is missing at the end", ""),
         (Kind::FIELD, "5 uT^", "a power is a small whole number", "^"),
-        (
-            Kind::FIELD,
-            "5 uT^99",
-            "a power is a small whole number",
-            "^99",
-        ),
+        (Kind::FIELD, "5 uT^99", "a power is a small whole number", "^99"),
         (Kind::FIELD, "5 uT^9/uT^-9^9", "`^` is unexpected here", "^"),
         (Kind::FIELD, "5 √√Hz", "a unit is needed", "√"),
-        (
-            Kind::FIELD,
-            "5 √rtHz",
-            "has a power that no unit has",
-            "√rtHz",
-        ),
+        (Kind::FIELD, "5 √rtHz", "has a power that no unit has", "√rtHz"),
         (Kind::FIELD, "5 m s^-2", "units are joined", "s"),
-        (
-            Kind::ACCELERATION,
-            "5 m*s-2",
-            "a power is written as in `s^-1`",
-            "-",
-        ),
-        (
-            Kind::FIELD,
-            "[1, 2] uT",
-            "a vector has 3 values, here are 2",
-            "[1, 2]",
-        ),
+        (Kind::ACCELERATION, "5 m*s-2", "a power is written as in `s^-1`", "-"),
+        (Kind::FIELD, "[1, 2] uT", "a vector has 3 values, here are 2", "[1, 2]"),
         (Kind::FIELD, "[1, 2, 3, 4] uT", "here are 4", "[1, 2, 3, 4]"),
-        (
-            Kind::FIELD,
-            "[1 uT, 2 uT, 3 uT]",
-            "one unit follows the bracket",
-            "u",
-        ),
+        (Kind::FIELD, "[1 uT, 2 uT, 3 uT]", "one unit follows the bracket", "u"),
         (Kind::FIELD, "[1, 2", "a vector is written as in", ""),
         (Kind::FIELD, "[]", "a number is needed", "]"),
-        (
-            Kind::FIELD,
-            "[1, 2, 3] uT",
-            "is a vector, but a magnetic field of one value",
-            "[1, 2, 3]",
-        ),
+        (Kind::FIELD, "[1, 2, 3] uT", "is a vector, but a magnetic field of one value", "[1, 2, 3]"),
         (Kind::FIELD, "1/0 uT", "a fraction cannot be over 0", "1/0"),
-        (
-            Kind::MAG_VARIANCE,
-            "-1 uT^2",
-            "is negative, but a magnetometer noise variance",
-            "-1",
-        ),
+        (Kind::MAG_VARIANCE, "-1 uT^2", "is negative, but a magnetometer noise variance", "-1"),
         (Kind::RATE, "0 Hz", "is not above zero", "0"),
     ] {
         let error = match kind.scalar(text) {
@@ -406,25 +265,16 @@ fn a_rate_is_an_exact_fraction() {
         assert_eq!(rate(text), Ok(fraction), "{text}");
     }
     for (text, message) in [
-        (
-            "2.5 ms",
-            "`2.5 ms` is a time, but a rate is needed: write \"400 Hz\"",
-        ),
+        ("2.5 ms", "`2.5 ms` is a time, but a rate is needed: write \"400 Hz\""),
         ("3 ms", "write \"1000/3 Hz\""),
         ("0 s", "is a time, but a rate"),
-        (
-            "100",
-            "a unit is missing in `100`: write \"100 Hz\" or \"100 kHz\"",
-        ),
+        ("100", "a unit is missing in `100`: write \"100 Hz\" or \"100 kHz\""),
         ("60 rpm", "is an angular rate, but a rate is needed"),
         ("0 Hz", "is not above zero"),
         ("-5 Hz", "is not above zero"),
         ("1.000001 MHz", "is above 1 MHz"),
         ("1e300 Hz", "is above 1 MHz"),
-        (
-            "133.3333333333 Hz",
-            "write a fraction, such as \"400/3 Hz\"",
-        ),
+        ("133.3333333333 Hz", "write a fraction, such as \"400/3 Hz\""),
         ("1e-300 Hz", "too many digits"),
         ("[1, 2, 3] Hz", "is a vector, but a rate of one value"),
     ] {
@@ -453,20 +303,13 @@ fn a_duration_is_exact_to_the_nanosecond() {
         ("9223372036.854775807 s", i64::MAX),
         ("9223372036854775807 ns", i64::MAX),
         // Too many digits for a fraction of whole numbers, not for a double-double.
-        (
-            "0.10000000000000000000000000000000000000000000000001 s",
-            100_000_000,
-        ),
+        ("0.10000000000000000000000000000000000000000000000001 s", 100_000_000),
         ("1e-200 s", 0),
     ] {
         assert_eq!(duration_ns(text, Sign::Any), Ok(nanoseconds), "{text}");
     }
     for (text, sign, message) in [
-        (
-            "-1 s",
-            Sign::NonNegative,
-            "is negative, but a time here must be 0 or above",
-        ),
+        ("-1 s", Sign::NonNegative, "is negative, but a time here must be 0 or above"),
         ("0 s", Sign::Positive, "is not above zero"),
         ("5", Sign::Any, "a unit is missing"),
         ("5 Hz", Sign::Any, "is a frequency, but a time is needed"),
@@ -490,23 +333,14 @@ fn a_resolution_may_be_given_either_way_up_or_in_bits() {
     near(step(Kind::GYRO_RESOLUTION, "131 LSB/(°/s)"), DEG / 131.0);
     near(step(Kind::GYRO_RESOLUTION, "131 LSB/dps"), DEG / 131.0);
     near(step(Kind::GYRO_RESOLUTION, "8.75 mdps/LSB"), 0.00875 * DEG);
-    near(
-        step(Kind::GYRO_RESOLUTION, "8.75 mdps/digit"),
-        0.00875 * DEG,
-    );
+    near(step(Kind::GYRO_RESOLUTION, "8.75 mdps/digit"), 0.00875 * DEG);
     near(step(Kind::GYRO_RESOLUTION, "8.75 mdps"), 0.00875 * DEG);
     near(step(Kind::ACCEL_RESOLUTION, "16384 LSB/g"), G / 16384.0);
     near(step(Kind::ACCEL_RESOLUTION, "0.061 mg/LSB"), 0.061e-3 * G);
     near(step(Kind::MAG_RESOLUTION, "0.15 µT/LSB"), 0.15);
     near(step(Kind::MAG_RESOLUTION, "1000 count/G"), 0.1);
-    assert_eq!(
-        Kind::GYRO_RESOLUTION.resolution("16 bit"),
-        Ok(Resolution::Bits(16))
-    );
-    assert_eq!(
-        Kind::MAG_RESOLUTION.resolution("14bits"),
-        Ok(Resolution::Bits(14))
-    );
+    assert_eq!(Kind::GYRO_RESOLUTION.resolution("16 bit"), Ok(Resolution::Bits(16)));
+    assert_eq!(Kind::MAG_RESOLUTION.resolution("14bits"), Ok(Resolution::Bits(14)));
     for (text, message) in [
         ("131 LSB/deg/s", "is in "),
         ("131", "\"131 LSB/(deg/s)\" or \"131 bit\""),
@@ -514,16 +348,10 @@ fn a_resolution_may_be_given_either_way_up_or_in_bits() {
         ("1e-310 LSB/(rad/s)", "is no step"),
         ("15.5 bit", "is not a whole number of bits"),
         ("65 bit", "from 1 to 64"),
-        (
-            "2048 LSB/g",
-            "is an accelerometer resolution, but a gyro resolution is needed",
-        ),
+        ("2048 LSB/g", "is an accelerometer resolution, but a gyro resolution is needed"),
         ("[1, 1, 1] dps", "is a vector"),
     ] {
-        let said = Kind::GYRO_RESOLUTION
-            .resolution(text)
-            .unwrap_err()
-            .to_string();
+        let said = Kind::GYRO_RESOLUTION.resolution(text).unwrap_err().to_string();
         assert!(said.contains(message), "{text}: {said}");
     }
 }
@@ -533,10 +361,7 @@ fn a_unit_alone_is_read_for_columns() {
     assert_eq!(Kind::ANGULAR_RATE.unit("deg/s"), Ok(Double::PI_OVER_180));
     assert_eq!(Kind::ANGULAR_RATE.unit(" rad/s "), Ok(Double::ONE));
     let said = Kind::ANGULAR_RATE.unit("deg").unwrap_err().to_string();
-    assert_eq!(
-        said,
-        "`deg` is an angle, but an angular rate is needed, such as `rad/s` or `deg/s`"
-    );
+    assert_eq!(said, "`deg` is an angle, but an angular rate is needed, such as `rad/s` or `deg/s`");
     assert!(Kind::ANGULAR_RATE.unit("").is_err());
     assert!(Kind::ANGULAR_RATE.unit("5 deg/s").is_err());
 }
@@ -598,10 +423,7 @@ fn text_is_as_short_as_it_can_be() {
     ] {
         assert_eq!(text_scalar(value, unit), text);
     }
-    assert_eq!(
-        text_vector([0.0, 0.5 * DEG, -2.0 * DEG], "deg/s"),
-        "[0, 0.5, -2] deg/s"
-    );
+    assert_eq!(text_vector([0.0, 0.5 * DEG, -2.0 * DEG], "deg/s"), "[0, 0.5, -2] deg/s");
     assert_eq!(text_vector([0.0, 5e-324, 1.0], "deg"), "[0, 5e-324, 1] rad");
     assert_eq!(text_vector([1.0, 2.5, -3e20], "uT"), "[1, 2.5, -3e20] uT");
 }
@@ -623,10 +445,7 @@ const SPELLINGS: [(&str, Kind); 12] = [
 
 fn finite() -> impl Strategy<Value = f64> {
     let ordinary = (-1e3_f64..1e3, -12_i32..6).prop_map(|(m, e)| m * 10_f64.powi(e));
-    prop_oneof![
-        any::<f64>().prop_filter("finite", |value| value.is_finite()),
-        ordinary
-    ]
+    prop_oneof![any::<f64>().prop_filter("finite", |value| value.is_finite()), ordinary]
 }
 
 proptest! {

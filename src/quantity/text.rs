@@ -32,10 +32,7 @@ fn written(values: &[f64], unit: &str, join: impl Fn(Vec<String>) -> String) -> 
     if scale.factor == Double::ONE {
         return plain(unit);
     }
-    let converted: Option<Vec<_>> = values
-        .iter()
-        .map(|value| converted(*value, scale, unit))
-        .collect();
+    let converted: Option<Vec<_>> = values.iter().map(|value| converted(*value, scale, unit)).collect();
     match converted {
         Some(numbers) => format!("{} {unit}", join(numbers)),
         None => plain(&scale.dimension.to_string()),

@@ -47,9 +47,7 @@ pub struct Dimension {
 
 impl Dimension {
     /// Plain numbers.
-    pub const NONE: Dimension = Dimension {
-        half_powers: [0; 8],
-    };
+    pub const NONE: Dimension = Dimension { half_powers: [0; 8] };
 
     /// This dimension with the exponent of `base` set to `half_powers`/2.
     pub const fn with(mut self, base: Base, half_powers: i8) -> Self {
@@ -129,12 +127,8 @@ pub(super) struct Scale {
 
 impl Scale {
     /// No unit at all.
-    pub const ONE: Scale = Scale {
-        factor: Double::ONE,
-        exact: Some(Ratio::ONE),
-        dimension: Dimension::NONE,
-        kelvin: false,
-    };
+    pub const ONE: Scale =
+        Scale { factor: Double::ONE, exact: Some(Ratio::ONE), dimension: Dimension::NONE, kelvin: false };
 
     /// The product; `None` for exponents beyond any use.
     pub fn times(self, other: Self) -> Option<Self> {
@@ -165,11 +159,7 @@ impl Scale {
             base.factor = self.factor.sqrt();
             base.exact = None;
         }
-        let times = if halves % 2 == 0 || self.factor == Double::ONE {
-            halves / 2
-        } else {
-            halves
-        };
+        let times = if halves % 2 == 0 || self.factor == Double::ONE { halves / 2 } else { halves };
         // Only numbers below; the dimension is set at the end.
         base.dimension = Dimension::NONE;
         let mut power = Self::ONE;
@@ -179,11 +169,7 @@ impl Scale {
         if times < 0 {
             power = Self::ONE.over(power)?;
         }
-        Some(Self {
-            dimension,
-            kelvin: self.kelvin,
-            ..power
-        })
+        Some(Self { dimension, kelvin: self.kelvin, ..power })
     }
 }
 
@@ -208,10 +194,7 @@ const FIELD: Dimension = Dimension::NONE.with(Base::Field, 2);
 const TEMPERATURE: Dimension = Dimension::NONE.with(Base::Temperature, 2);
 const COUNT: Dimension = Dimension::NONE.with(Base::Count, 2);
 const BIT: Dimension = Dimension::NONE.with(Base::Bit, 2);
-const PRESSURE: Dimension = Dimension::NONE
-    .with(Base::Mass, 2)
-    .with(Base::Length, -2)
-    .with(Base::Time, -4);
+const PRESSURE: Dimension = Dimension::NONE.with(Base::Mass, 2).with(Base::Length, -2).with(Base::Time, -4);
 
 const fn unit(
     names: &'static [&'static str],
@@ -219,13 +202,7 @@ const fn unit(
     ratio: (u64, u64),
     dimension: Dimension,
 ) -> Unit {
-    Unit {
-        names,
-        prefixes,
-        ratio,
-        degrees: false,
-        dimension,
-    }
+    Unit { names, prefixes, ratio, degrees: false, dimension }
 }
 
 const fn in_degrees(
@@ -234,10 +211,7 @@ const fn in_degrees(
     ratio: (u64, u64),
     dimension: Dimension,
 ) -> Unit {
-    Unit {
-        degrees: true,
-        ..unit(names, prefixes, ratio, dimension)
-    }
+    Unit { degrees: true, ..unit(names, prefixes, ratio, dimension) }
 }
 
 const UNITS: &[Unit] = &[
@@ -256,29 +230,14 @@ const UNITS: &[Unit] = &[
     unit(&["Hz"], "kMGm", (1, 1), FREQUENCY),
     unit(&["m"], "kmcµn", (1, 1), LENGTH),
     unit(&["ft"], "", (3048, 10_000), LENGTH),
-    unit(
-        &["g", "g0", "gn"],
-        "mµn",
-        (980_665, 100_000),
-        LENGTH.with(Base::Time, -4),
-    ),
-    unit(
-        &["knot", "knots", "kn", "kt"],
-        "",
-        (1852, 3600),
-        LENGTH.with(Base::Time, -2),
-    ),
+    unit(&["g", "g0", "gn"], "mµn", (980_665, 100_000), LENGTH.with(Base::Time, -4)),
+    unit(&["knot", "knots", "kn", "kt"], "", (1852, 3600), LENGTH.with(Base::Time, -2)),
     unit(&["T"], "mµn", (1_000_000, 1), FIELD),
     unit(&["G", "Gs", "gauss", "Gauss"], "mµ", (100, 1), FIELD),
     unit(&["degC", "°C", "ºC", "℃", "K"], "m", (1, 1), TEMPERATURE),
     unit(&["%"], "", (1, 100), Dimension::NONE),
     unit(&["ppm"], "", (1, 1_000_000), Dimension::NONE),
-    unit(
-        &["LSB", "LSBs", "lsb", "count", "counts", "digit", "digits"],
-        "",
-        (1, 1),
-        COUNT,
-    ),
+    unit(&["LSB", "LSBs", "lsb", "count", "counts", "digit", "digits"], "", (1, 1), COUNT),
     unit(&["bit", "bits"], "", (1, 1), BIT),
     unit(&["Pa"], "hkM", (1, 1), PRESSURE),
     unit(&["bar"], "m", (100_000, 1), PRESSURE),
@@ -315,9 +274,7 @@ pub(super) fn find(name: &str) -> Option<Scale> {
     };
     let plain = |name: &str| whole(name).or_else(|| prefixed(name));
     let root = |name: &str| {
-        let under = name
-            .strip_prefix("sqrt")
-            .or_else(|| name.strip_prefix("rt"));
+        let under = name.strip_prefix("sqrt").or_else(|| name.strip_prefix("rt"));
         plain(under?)?.raised(1)
     };
     plain(name).or_else(|| root(name))
@@ -330,11 +287,7 @@ fn scale(unit: &Unit, prefix: (u64, u64), name: &str) -> Scale {
     );
     let plain = ratio.map_or(Double::ONE, Ratio::to_double);
     Scale {
-        factor: if unit.degrees {
-            plain * Double::PI_OVER_180
-        } else {
-            plain
-        },
+        factor: if unit.degrees { plain * Double::PI_OVER_180 } else { plain },
         exact: ratio.filter(|_| !unit.degrees),
         dimension: unit.dimension,
         kelvin: name == "K",
@@ -342,9 +295,7 @@ fn scale(unit: &Unit, prefix: (u64, u64), name: &str) -> Scale {
 }
 
 /// Compounds worth suggesting, before any single unit as near.
-const COMPOUNDS: [&str; 8] = [
-    "deg/s", "rad/s", "m/s", "m/s^2", "deg/h", "km/h", "rad/s^2", "deg/√h",
-];
+const COMPOUNDS: [&str; 8] = ["deg/s", "rad/s", "m/s", "m/s^2", "deg/h", "km/h", "rad/s^2", "deg/√h"];
 
 /// What is written elsewhere, and how it is written here.
 const ALIASES: [(&str, &str); 9] = [
@@ -369,12 +320,7 @@ pub(super) fn suggest(name: &str) -> Option<String> {
     if letters.len() < name.len() && find(letters).is_some() {
         return Some(format!("{letters}^{}", &name[letters.len()..]));
     }
-    let known = || {
-        COMPOUNDS
-            .iter()
-            .map(|unit| (*unit).to_owned())
-            .chain(spellings())
-    };
+    let known = || COMPOUNDS.iter().map(|unit| (*unit).to_owned()).chain(spellings());
     if let Some(unit) = known().find(|unit| unit.to_lowercase() == lower) {
         return Some(unit);
     }

@@ -1,6 +1,7 @@
 //! TOML as written: a tree in which every key and value knows its place, so that each mistake can be pointed at.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -16,6 +17,11 @@ impl Place {
     /// A source as a whole, such as `--set gyro.rate=fast`.
     pub fn whole(source: &str) -> Place {
         Place { source: source.into(), position: None }
+    }
+
+    /// Line and column, where it has them.
+    pub(super) fn position(&self) -> Option<(usize, usize)> {
+        self.position
     }
 
     /// This place, `characters` further right.
@@ -145,9 +151,11 @@ impl Table {
         match DeTable::parse(text) {
             Ok(table) => Ok(source.table(table.get_ref(), 0)),
             Err(error) => {
-                let start = error.span().map_or(0, |span| span.start);
-                let message = format!("this is not TOML: {}", error.message().replace('\n', "; "));
-                Err(Mistake { place: source.place(start), message })
+                let span = error.span().unwrap_or_default();
+                Err(Mistake {
+                    place: source.place(span.start),
+                    message: source.not_toml(error.message(), span),
+                })
             }
         }
     }
@@ -165,22 +173,32 @@ impl Table {
         };
         let value = value_of(text.trim(), &place);
         let mut table = self;
-        let mut steps = path.trim().split('.').peekable();
+        let path = path.trim();
+        let mut steps = path.split('.').peekable();
         while let Some(step) = steps.next() {
             if step.is_empty() {
                 return Err(wrong(format!("`{path}` is no key: write, for example, gyro.rate")));
             }
             let node = table.entry(step, &place);
             if steps.peek().is_none() {
-                node.value = value;
+                *node = Node { value, place, plain: false };
                 return Ok(());
             }
             let inner = match &mut node.value {
                 Value::Array(items) => {
                     let (index, count) = (steps.next().unwrap_or_default(), items.len());
                     let item = index.parse().ok().and_then(|i: usize| items.get_mut(i));
-                    let no_item = format!("`{step}` has {count} entries, counted from 0: `{index}` is none of them");
-                    &mut item.ok_or_else(|| wrong(no_item))?.value
+                    let no_item = match count {
+                        0 => format!("`{step}` has no entries"),
+                        1 => format!("`{step}` has 1 entry, {step}.0"),
+                        _ => format!("`{step}` has {count} entries, {step}.0 to {step}.{}", count - 1),
+                    };
+                    let item = item.ok_or_else(|| wrong(no_item))?;
+                    if steps.peek().is_none() {
+                        *item = Node { value, place, plain: false };
+                        return Ok(());
+                    }
+                    &mut item.value
                 }
                 value => value,
             };
@@ -194,14 +212,12 @@ impl Table {
 
     fn entry(&mut self, key: &str, place: &Place) -> &mut Node {
         let index = self.entries.iter().position(|entry| entry.key == key).unwrap_or_else(|| {
-            let node = Node { value: Value::Table(Table::empty(place.clone())), place: place.clone(), plain: false };
+            let node =
+                Node { value: Value::Table(Table::empty(place.clone())), place: place.clone(), plain: false };
             self.entries.push(Entry { key: key.into(), place: place.clone(), node });
             self.entries.len() - 1
         });
-        let node = &mut self.entries[index].node;
-        node.place = place.clone();
-        node.plain = false;
-        node
+        &mut self.entries[index].node
     }
 }
 
@@ -235,6 +251,29 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
+    /// What the TOML reader found, and what its commonest reasons mean here.
+    fn not_toml(&self, found: &str, span: Range<usize>) -> String {
+        let found = found.replace('\n', "; ");
+        let word = self.text.get(span.clone()).unwrap_or_default();
+        if found.contains("duplicate key") {
+            return format!("`{word}` is given twice");
+        }
+        let before = self.text.get(..span.start).unwrap_or_default();
+        let line =
+            self.text[before.rfind('\n').map_or(0, |end| end + 1)..].lines().next().unwrap_or_default();
+        let unquoted = |(key, value): (&str, &str)| {
+            let value = value.split('#').next().unwrap_or_default().trim();
+            let is_quantity = value.starts_with(|c: char| c.is_ascii_digit() || "+-.[".contains(c))
+                && value.contains(char::is_alphabetic)
+                && !value.contains(['"', '\'', '{']);
+            is_quantity.then(|| {
+                format!("a value with a unit stands in quotation marks, {} = \"{value}\"", key.trim())
+            })
+        };
+        let why = line.split_once('=').and_then(unquoted).unwrap_or(found);
+        format!("this is not TOML: {why}")
+    }
+
     fn place(&self, offset: usize) -> Place {
         let before = &self.text[..offset.min(self.text.len())];
         let line = before.matches('\n').count() + 1;
@@ -280,7 +319,9 @@ mod tests {
 
     #[test]
     fn every_value_knows_its_line_and_column() {
-        let table = Table::parse("seed = 1\n[gyro]\n# µT\nrate = \"1 kHz\"\n[[motion]]\nkind = \"hold\"\n", "s.toml").unwrap();
+        let table =
+            Table::parse("seed = 1\n[gyro]\n# µT\nrate = \"1 kHz\"\n[[motion]]\nkind = \"hold\"\n", "s.toml")
+                .unwrap();
         let Value::Table(gyro) = &table.get("gyro").unwrap().node.value else { panic!() };
         let rate = gyro.get("rate").unwrap();
         assert_eq!(rate.place.to_string(), "s.toml:4:1");
@@ -297,14 +338,23 @@ mod tests {
     #[test]
     fn set_replaces_adds_and_indexes() {
         let mut table = Table::parse("seed = 1\n[[motion]]\nduration = \"1 s\"\n", "s.toml").unwrap();
-        for assignment in ["seed=7", "gyro.rate=8 kHz", "motion.0.duration='2 s'", "gyro.bias=[1, 2, 3] deg/s"] {
+        for assignment in
+            ["seed=7", "gyro.rate=8 kHz", "motion.0.duration='2 s'", "gyro.bias=[1, 2, 3] deg/s"]
+        {
             table.set(assignment).unwrap();
         }
         assert!(matches!(table.get("seed").unwrap().node.value, Value::Integer(7)));
         let Value::Table(gyro) = &table.get("gyro").unwrap().node.value else { panic!() };
         assert!(matches!(&gyro.get("rate").unwrap().node.value, Value::Text(text) if text == "8 kHz"));
-        assert!(matches!(&gyro.get("bias").unwrap().node.value, Value::Text(text) if text == "[1, 2, 3] deg/s"));
-        for (bad, says) in [("seed", "KEY=VALUE"), ("motion.3.duration=1", "1 entries"), ("seed.x=1", "not a table"), ("a..b=1", "no key")] {
+        assert!(
+            matches!(&gyro.get("bias").unwrap().node.value, Value::Text(text) if text == "[1, 2, 3] deg/s")
+        );
+        for (bad, says) in [
+            ("seed", "KEY=VALUE"),
+            ("motion.3.duration=1", "has 1 entry, motion.0"),
+            ("seed.x=1", "not a table"),
+            ("a..b=1", "no key"),
+        ] {
             let message = table.set(bad).unwrap_err().to_string();
             assert!(message.starts_with(&format!("--set {bad}")) && message.contains(says), "{message}");
         }

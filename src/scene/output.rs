@@ -23,10 +23,13 @@ impl FromStr for Destination {
     fn from_str(text: &str) -> Result<Destination, String> {
         let names = Protocol::ALL.map(Protocol::name);
         let Some((protocol, address)) = text.split_once('@') else {
-            return Err(format!("`{text}` is no PROTOCOL@LINK: write, for example, mpu@pty (protocols: {})", names.join(", ")));
+            return Err(format!(
+                "`{text}` is no PROTOCOL@LINK: write, for example, mpu@pty (protocols: {})",
+                names.join(", ")
+            ));
         };
         let Some(protocol) = Protocol::from_name(protocol) else {
-            let near = suggest::nearest(protocol, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            let near = suggest::did_you_mean(protocol, names);
             return Err(format!("`{protocol}` is no protocol of this version ({}){near}", names.join(", ")));
         };
         let address = address.parse::<Address>().map_err(|error| error.to_string())?;
@@ -61,8 +64,8 @@ pub(super) struct Outputs {
     pub resolved: Vec<toml::Value>,
 }
 
-/// Every `[[output]]`.
-pub(super) fn outputs(top: &Section<'_>, sensors: &[SensorPlan]) -> Outputs {
+/// Every `[[output]]`; `None` where the scene's sensors could not all be read, so that nothing is blamed on that.
+pub(super) fn outputs(top: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Outputs {
     let mut all = Outputs { outputs: Vec::new(), resolved: Vec::new() };
     for section in top.tables("output") {
         all.outputs.extend(output(&section, sensors));
@@ -71,9 +74,9 @@ pub(super) fn outputs(top: &Section<'_>, sensors: &[SensorPlan]) -> Outputs {
     all
 }
 
-fn output(section: &Section<'_>, sensors: &[SensorPlan]) -> Option<Output> {
+fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Output> {
     if !section.has("to") {
-        section.mistake("to", "an output needs a destination, such as to = \"mpu@pty\"");
+        section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
     let to = section.text("to", None)?;
     let to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
@@ -87,8 +90,8 @@ fn output(section: &Section<'_>, sensors: &[SensorPlan]) -> Option<Output> {
             section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
         }
     }
-    if let Err(why) = wire::check(to.protocol, &wire, sensors) {
-        section.mistake("to", why);
+    if let Some(Err(why)) = sensors.map(|sensors| wire::check(to.protocol, &wire, sensors)) {
+        section.mistake("layout", why);
     }
     Some(Output { to, wire })
 }

@@ -1,114 +1,94 @@
 //! Reading one table of a scene: every key by its declaration, every mistake collected with its place, and every
 //! value written down again for the scene as resolved.
 
-use super::document::{Entry, Mistake, Node, Place, Table, Value};
+use super::document::{Entry, Node, Place, Table, Value};
+use super::reader::Reader;
 use super::suggest;
 use crate::geometry::Axes;
 use crate::keys::{self, Key, Takes, Values};
 use crate::quantity::{self, Kind, QuantityError, Sign};
-use crate::random::{self, Stream};
 use crate::time::{Rate, SimTime};
-use rand::RngExt;
-use rand_distr::{Distribution, StandardNormal};
 use std::cell::{Cell, RefCell};
-
-/// A value that was drawn once for this run.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Drawn {
-    /// Such as `gyro.noise_std`.
-    pub key: String,
-    /// What was drawn, as a scene would write it.
-    pub value: String,
-}
-
-/// What reading a whole scene collects.
-pub struct Reader {
-    /// The scene's seed, for values drawn once a run.
-    pub seed: Cell<u64>,
-    /// The axes it is written in.
-    pub axes: Cell<Axes>,
-    mistakes: RefCell<Vec<Mistake>>,
-    draws: RefCell<Vec<Drawn>>,
-}
-
-impl Reader {
-    /// With nothing read yet.
-    pub fn new() -> Reader {
-        Reader {
-            seed: Cell::new(0),
-            axes: Cell::new(Axes::default()),
-            mistakes: RefCell::default(),
-            draws: RefCell::default(),
-        }
-    }
-
-    /// Notes a mistake.
-    pub fn mistake(&self, place: &Place, message: impl Into<String>) {
-        let mistake = Mistake { place: place.clone(), message: message.into() };
-        let mut mistakes = self.mistakes.borrow_mut();
-        if !mistakes.contains(&mistake) {
-            mistakes.push(mistake);
-        }
-    }
-
-    /// What was drawn, or every mistake.
-    pub fn finish(self) -> Result<Vec<Drawn>, Vec<Mistake>> {
-        let mistakes = self.mistakes.into_inner();
-        if mistakes.is_empty() { Ok(self.draws.into_inner()) } else { Err(mistakes) }
-    }
-}
 
 /// One table being read.
 pub struct Section<'r> {
-    reader: &'r Reader,
+    pub(super) reader: &'r Reader,
     /// Such as `gyro` or `motion.2`; empty for the scene itself.
-    path: String,
+    pub(super) path: String,
     table: Table,
     known: RefCell<Vec<&'static str>>,
     resolved: RefCell<toml::Table>,
+    /// What messages call it.
+    called: RefCell<String>,
+    /// Whether any key may stand in it: a mistake already says what is wrong with the table as a whole.
     forgiving: Cell<bool>,
+    /// Whether nothing that it lacks is worth a word: no table stands where it should.
+    silent: bool,
 }
 
 impl<'r> Section<'r> {
     /// Of `table`, called `path` in messages.
     pub fn new(reader: &'r Reader, path: impl Into<String>, table: Table) -> Section<'r> {
+        let path = path.into();
+        let called = match path.split_once('.') {
+            Some((array, _)) => format!("[[{array}]]"),
+            None if path.is_empty() => "a scene".into(),
+            None => format!("[{path}]"),
+        };
         Section {
             reader,
-            path: path.into(),
+            path,
             table,
             known: RefCell::default(),
             resolved: RefCell::default(),
+            called: RefCell::new(called),
             forgiving: Cell::new(false),
+            silent: false,
         }
+    }
+
+    /// Gives it another name in messages.
+    pub fn call(&self, name: String) {
+        *self.called.borrow_mut() = name;
     }
 
     /// The table called `key` in this one, empty if absent.
     pub fn table(&self, key: &'static str) -> Section<'r> {
-        let table = match self.entry(key).map(|entry| &entry.node) {
-            None => Table::empty(self.table.place.clone()),
-            Some(Node { value: Value::Table(table), .. }) => table.clone(),
+        match self.entry(key).map(|entry| &entry.node) {
+            None => Section::new(self.reader, key, Table::empty(self.table.place.clone())),
+            Some(Node { value: Value::Table(table), .. }) => Section::new(self.reader, key, table.clone()),
             Some(node) => {
-                self.reader.mistake(&node.place, format!("`{key}` is {}; write it as a table, [{key}]", node.value.what()));
-                Table::empty(node.place.clone())
+                self.mistake(key, format!("is {}; write it as one table, [{key}]", node.value.what()));
+                let empty = Table::empty(node.place.clone());
+                Section { silent: true, ..Section::new(self.reader, key, empty) }
             }
-        };
-        Section::new(self.reader, key, table)
+        }
     }
 
     /// The tables of the array called `key`, such as every `[[motion]]`.
     pub fn tables(&self, key: &'static str) -> Vec<Section<'r>> {
         let Some(entry) = self.entry(key) else { return Vec::new() };
-        let nodes = match &entry.node.value {
-            Value::Array(nodes) => nodes.as_slice(),
-            _ => std::slice::from_ref(&entry.node),
+        let Value::Array(nodes) = &entry.node.value else {
+            let is = entry.node.value.what();
+            self.mistake(
+                key,
+                format!("is {is}, but a scene may have several: write each as a table of its own, [[{key}]]"),
+            );
+            return Vec::new();
         };
         let mut sections = Vec::new();
         for (i, node) in nodes.iter().enumerate() {
-            match (&node.value, &entry.node.value) {
-                (Value::Table(table), Value::Array(_)) => {
-                    sections.push(Section::new(self.reader, format!("{key}.{i}"), table.clone()));
+            match &node.value {
+                Value::Table(table) => {
+                    sections.push(Section::new(self.reader, format!("{key}.{i}"), table.clone()))
                 }
-                _ => self.reader.mistake(&node.place, format!("write each as a table of its own, [[{key}]]")),
+                other => {
+                    let is = other.what();
+                    self.note(
+                        &node.place,
+                        format!("`{key}` holds {is}: write each as a table of its own, [[{key}]]"),
+                    );
+                }
             }
         }
         sections
@@ -134,7 +114,7 @@ impl<'r> Section<'r> {
         self.table.get(key).is_some()
     }
 
-    /// Accepts whatever keys there are: a mistake already said what is wrong with the table as a whole.
+    /// Accepts whatever keys there are from now on.
     pub fn allow_everything(&self) {
         self.forgiving.set(true);
     }
@@ -158,11 +138,30 @@ impl<'r> Section<'r> {
         self.table.get(key).map_or(&self.table.place, |entry| &entry.node.place).clone()
     }
 
-    /// Notes a mistake at a key's value.
+    /// Notes a mistake at a key's value. A message that begins with a verb goes on from the key, one that begins
+    /// with a name stands alone, any other gets the key before it.
     pub fn mistake(&self, key: &'static str, message: impl AsRef<str>) {
         let message = message.as_ref();
-        let named = if message.starts_with('`') { message.to_string() } else { format!("`{key}`: {message}") };
-        self.reader.mistake(&self.place(key), named);
+        let named = if message.starts_with('`') {
+            message.to_string()
+        } else if ["is ", "needs ", "takes ", "cannot "].iter().any(|verb| message.starts_with(verb)) {
+            format!("`{key}` {message}")
+        } else {
+            format!("`{key}`: {message}")
+        };
+        self.note(&self.place(key), named);
+    }
+
+    /// Notes that the table lacks something.
+    pub fn lacks(&self, message: String) {
+        self.note(&self.table.place, message);
+    }
+
+    /// Notes a mistake at any place.
+    pub(super) fn note(&self, place: &Place, message: String) {
+        if !self.silent {
+            self.reader.mistake(place, message);
+        }
     }
 
     /// Writes a value into the scene as resolved.
@@ -177,7 +176,10 @@ impl<'r> Section<'r> {
             Some(Node { value: Value::Text(text), .. }) => text.clone(),
             Some(Node { value: Value::Date(text), .. }) => text.clone(),
             Some(node) => {
-                self.mistake(key, format!("is {}; write it as a string, in quotation marks", node.value.what()));
+                self.mistake(
+                    key,
+                    format!("is {}; write it as a string, in quotation marks", node.value.what()),
+                );
                 return None;
             }
         };
@@ -189,8 +191,8 @@ impl<'r> Section<'r> {
     pub fn word(&self, key: &'static str, words: &[&'static str], default: &'static str) -> &'static str {
         let Some(text) = self.text(key, Some(default)) else { return default };
         words.iter().copied().find(|word| *word == text).unwrap_or_else(|| {
-            let hint = suggest::nearest(&text, words.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
-            self.mistake(key, format!("`{text}` is none of {}{hint}", words.join(", ")));
+            let hint = suggest::did_you_mean(&text, words.iter().copied());
+            self.mistake(key, format!("takes {}, not `{text}`{hint}", words.join(" or ")));
             default
         })
     }
@@ -205,26 +207,12 @@ impl<'r> Section<'r> {
                     Value::Integer(number) => number.to_string(),
                     other => other.what().to_string(),
                 };
-                self.mistake(key, format!("is {bad}; write a whole number from 0 to {}", i64::MAX));
+                self.mistake(key, format!("is {bad}; write a whole number from 0 to 2^63 - 1"));
                 default
             }
         };
         self.resolve(key, number as i64);
         number
-    }
-
-    /// True or false, or the default.
-    pub fn flag(&self, key: &'static str, default: bool) -> bool {
-        let flag = match self.entry(key).map(|entry| &entry.node.value) {
-            None => default,
-            Some(Value::Boolean(flag)) => *flag,
-            Some(other) => {
-                self.mistake(key, format!("is {}; write true or false", other.what()));
-                default
-            }
-        };
-        self.resolve(key, flag);
-        flag
     }
 
     /// The strings of an array, each with its place.
@@ -236,7 +224,9 @@ impl<'r> Section<'r> {
                 for node in nodes {
                     match &node.value {
                         Value::Text(text) => texts.push((text.clone(), node.place.clone())),
-                        other => self.reader.mistake(&node.place, format!("`{key}` holds strings, not {}", other.what())),
+                        other => {
+                            self.note(&node.place, format!("`{key}` holds strings, not {}", other.what()))
+                        }
                     }
                 }
             }
@@ -259,19 +249,22 @@ impl<'r> Section<'r> {
             _ => None,
         };
         let Some([w, x, y, z]) = numbers.as_deref() else {
-            self.mistake(key, "a quaternion is four bare numbers, [w, x, y, z]");
+            self.mistake(key, "a quaternion is four numbers without a unit: [w, x, y, z]");
             return None;
         };
         let length = libm::sqrt(w * w + x * x + y * y + z * z);
         if (length - 1.0).abs() > 1e-3 {
-            self.mistake(key, format!("its length is {length}, but a rotation's is 1"));
+            self.mistake(
+                key,
+                format!("[{w}, {x}, {y}, {z}] has the length {length:.4}, but a rotation's is 1"),
+            );
             return None;
         }
         self.resolve(key, vec![*w, *x, *y, *z]);
         Some([w / length, x / length, y / length, z / length])
     }
 
-    /// A text with a unit, read by `read`; `kind` names what is needed where a bare number stands.
+    /// A text with a unit, read by `read`; a bare number is read too, for what is said of the unit it lacks.
     fn measured<T>(
         &self,
         key: &'static str,
@@ -289,30 +282,41 @@ impl<'r> Section<'r> {
                 Some(value)
             }
             Err(error) => {
-                let place = self.table.get(key).map_or(self.table.place.clone(), |entry| entry.node.place_in_text(error.offset()));
-                self.reader.mistake(&place, format!("`{key}`: {error}"));
+                let place = self
+                    .table
+                    .get(key)
+                    .map_or(self.table.place.clone(), |entry| entry.node.place_in_text(error.offset()));
+                let instead = suggest::instead(key, &text);
+                self.note(&place, format!("`{key}`: {error}{instead}"));
                 None
             }
         }
     }
 
-    /// The text of a quantity; a bare number is a mistake that shows how to write it.
-    fn spelled(&self, key: &'static str, node: &Node, example: &str) -> Option<String> {
-        match &node.value {
+    /// The text of a quantity, or of the bare numbers that stand in its place.
+    pub(super) fn spelled(&self, key: &'static str, node: &Node, example: &str) -> Option<String> {
+        let bare = |node: &Node| match &node.value {
+            Value::Integer(number) => Some(number.to_string()),
+            Value::Float(number) => Some(number.replace('_', "")),
+            _ => None,
+        };
+        let text = match &node.value {
             Value::Text(text) => Some(text.clone()),
-            Value::Integer(number) => {
-                self.mistake(key, format!("`{number}` lacks a unit: write a string with one, such as \"{example}\""));
-                None
-            }
-            Value::Float(number) => {
-                self.mistake(key, format!("`{number}` lacks a unit: write a string with one, such as \"{example}\""));
-                None
-            }
-            other => {
-                self.mistake(key, format!("is {}; write a string with a unit, such as \"{example}\"", other.what()));
-                None
-            }
+            Value::Array(nodes) => nodes
+                .iter()
+                .map(bare)
+                .collect::<Option<Vec<_>>>()
+                .map(|numbers| format!("[{}]", numbers.join(", "))),
+            _ => bare(node),
+        };
+        if text.is_none() {
+            let is = node.value.what();
+            self.note(
+                &node.place,
+                format!("`{key}` is {is}; write a string with a unit, such as \"{example}\""),
+            );
         }
+        text
     }
 
     /// One number of a kind.
@@ -320,9 +324,9 @@ impl<'r> Section<'r> {
         self.measured(key, default, kind.example(), |text| kind.scalar(text)).map(|value| value.to_f64())
     }
 
-    /// A time of at least zero.
-    pub fn time(&self, key: &'static str, default: Option<&str>) -> Option<SimTime> {
-        self.measured(key, default, "5 s", |text| quantity::duration_ns(text, Sign::NonNegative)).map(SimTime)
+    /// A time, exact in nanoseconds.
+    pub fn time(&self, key: &'static str, default: Option<&str>, sign: Sign) -> Option<SimTime> {
+        self.measured(key, default, "5 s", |text| quantity::duration_ns(text, sign)).map(SimTime)
     }
 
     /// A sensor's rate.
@@ -332,8 +336,14 @@ impl<'r> Section<'r> {
     }
 
     /// A vector of a kind, one number filling all three, to full precision.
-    pub fn vector(&self, key: &'static str, kind: Kind, default: Option<&str>) -> Option<[crate::double::Double; 3]> {
-        self.measured(key, default, kind.example(), |text| kind.vector(text))
+    pub fn vector(
+        &self,
+        key: &'static str,
+        kind: Kind,
+        default: Option<&str>,
+    ) -> Option<[crate::double::Double; 3]> {
+        let example = format!("[1, 2, 3] {}", kind.units()[0]);
+        self.measured(key, default, &example, |text| kind.vector(text))
     }
 
     /// Every declared key of `keys` that has a value or a default.
@@ -347,16 +357,27 @@ impl<'r> Section<'r> {
         values
     }
 
+    /// Whether one of the keys is there but could not be read, which a mistake says already.
+    pub fn unread(&self, keys: &[Key], values: &Values) -> bool {
+        keys.iter().any(|key| self.has(key.name) && !values.has(key.name))
+    }
+
     fn value(&self, key: &Key, may_draw: bool) -> Option<keys::Value> {
-        if let Some(Value::Table(table)) = self.entry(key.name).map(|entry| &entry.node.value) {
-            return if may_draw { self.draw(key, table) } else { self.spelled(key.name, &self.entry(key.name)?.node, "").map(|_| None)? };
+        if let Some(Value::Table(table)) = self.entry(key.name).map(|entry| &entry.node.value)
+            && may_draw
+        {
+            return self.draw(key, table);
         }
         // A default of "0" is zero in the kind's own unit.
-        let zero = |kind: Kind| key.default.map(|text| if text == "0" { format!("0 {}", kind.units()[0]) } else { text.into() });
+        let zero = |kind: Kind| {
+            key.default.map(|text| if text == "0" { format!("0 {}", kind.units()[0]) } else { text.into() })
+        };
         let name = key.name;
         Some(match key.takes {
             Takes::Scalar(kind) => {
-                keys::Value::Scalar(self.measured(name, zero(kind).as_deref(), kind.example(), |text| kind.scalar(text))?)
+                keys::Value::Scalar(
+                    self.measured(name, zero(kind).as_deref(), kind.example(), |text| kind.scalar(text))?,
+                )
             }
             Takes::PerAxis(kind) => keys::Value::Triple(self.vector(name, kind, zero(kind).as_deref())?),
             Takes::BodyVector(kind) => {
@@ -365,74 +386,13 @@ impl<'r> Section<'r> {
                 keys::Value::Triple([x, y * sign, z * sign])
             }
             Takes::Resolution(kind) => {
-                keys::Value::Resolution(self.measured(name, key.default, kind.example(), |text| kind.resolution(text))?)
+                keys::Value::Resolution(
+                    self.measured(name, key.default, kind.example(), |text| kind.resolution(text))?,
+                )
             }
-            Takes::Duration => keys::Value::Time(self.time(name, key.default)?),
+            Takes::Duration => keys::Value::Time(self.time(name, key.default, Sign::NonNegative)?),
             Takes::Word(words) => keys::Value::Word(self.word(name, words, key.default.unwrap_or(words[0]))),
         })
-    }
-
-    /// A value drawn once a run: `{ uniform = [low, high] }` or `{ normal = [mean, std] }`, each axis by itself.
-    fn draw(&self, key: &Key, table: &Table) -> Option<keys::Value> {
-        let (kind, scalar, magnitude) = match key.takes {
-            Takes::Scalar(kind) => (kind, true, true),
-            Takes::PerAxis(kind) => (kind, false, true),
-            Takes::BodyVector(kind) => (kind, false, false),
-            _ => {
-                self.mistake(key.name, "cannot be drawn from a distribution");
-                return None;
-            }
-        };
-        let Some((shape, low, high)) = self.distribution(key.name, kind.signed(Sign::Any), table) else { return None };
-        let axes: &[usize] = if scalar { &[0] } else { &[0, 1, 2] };
-        let mut drawn = [0.0; 3];
-        for &axis in axes {
-            let name = format!("draw/{}/{}/{}", self.path, key.name, ["x", "y", "z"][axis]);
-            let mut stream = random::stream(self.reader.seed.get(), &name);
-            let value = shape.sample(low[axis], high[axis], &mut stream);
-            // The size of a noise has no sign; the tail of a normal distribution is folded over.
-            drawn[axis] = if magnitude { value.abs() } else { value };
-        }
-        let unit = kind.units()[0];
-        let text = if scalar { quantity::text_scalar(drawn[0], unit) } else { quantity::text_vector(drawn, unit) };
-        self.reader.draws.borrow_mut().push(Drawn { key: format!("{}.{}", self.path, key.name), value: text.clone() });
-        self.resolve(key.name, text);
-        let sign = if magnitude { 1.0 } else { self.reader.axes.get().body_sign() };
-        Some(match key.takes {
-            Takes::Scalar(_) => keys::Value::Scalar(drawn[0].into()),
-            _ => keys::Value::Triple([drawn[0], drawn[1] * sign, drawn[2] * sign].map(Into::into)),
-        })
-    }
-
-    fn distribution(&self, key: &'static str, kind: Kind, table: &Table) -> Option<(Shape, [f64; 3], [f64; 3])> {
-        let entries: Vec<_> = table.entries.iter().filter(|entry| entry.key != "source" && entry.key != "assumed").collect();
-        let (shape, entry) = match entries[..] {
-            [entry] if entry.key == "uniform" => (Shape::Uniform, entry),
-            [entry] if entry.key == "normal" => (Shape::Normal, entry),
-            _ => {
-                self.mistake(key, format!("a drawn value is {{ uniform = [low, high] }} or {{ normal = [mean, std] }}, such as {{ uniform = [\"{0}\", \"{0}\"] }}", kind.example()));
-                return None;
-            }
-        };
-        let Value::Array(nodes) = &entry.node.value else {
-            self.reader.mistake(&entry.node.place, format!("`{}` takes an array of two strings", entry.key));
-            return None;
-        };
-        let [low, high] = &nodes[..] else {
-            self.reader.mistake(&entry.node.place, format!("`{}` takes two values, not {}", entry.key, nodes.len()));
-            return None;
-        };
-        let end = |node: &Node| {
-            let text = self.spelled(key, node, kind.example())?;
-            match kind.vector(&text) {
-                Ok(value) => Some(value.map(|x| x.to_f64())),
-                Err(error) => {
-                    self.reader.mistake(&node.place_in_text(error.offset()), format!("`{key}`: {error}"));
-                    None
-                }
-            }
-        };
-        Some((shape, end(low)?, end(high)?))
     }
 
     /// Complains about every key that nothing asked for, and gives back the table as resolved.
@@ -440,34 +400,16 @@ impl<'r> Section<'r> {
         let known = self.known.into_inner();
         let unknown = self.table.entries.iter().filter(|entry| !known.contains(&entry.key.as_str()));
         for entry in unknown.filter(|_| !self.forgiving.get()) {
-            let (key, inside) = (&entry.key, if self.path.is_empty() { "a scene".into() } else { format!("[{}]", self.path) });
-            let message = if let Some(ours) = suggest::elsewhere(key) {
+            let (key, inside) = (&entry.key, self.called.borrow());
+            let message = if let Some(ours) = suggest::elsewhere(&self.path, key) {
                 format!("`{key}` {ours}")
             } else if let Some(near) = suggest::nearest(key, known.iter().copied()) {
                 format!("`{key}` is not a key of {inside}: did you mean `{near}`?")
             } else {
-                format!("`{key}` is not a key of {inside}, which knows {}", known.join(", "))
+                format!("`{key}` is not a key of {inside}, which has {}", known.join(", "))
             };
             self.reader.mistake(&entry.place, message);
         }
         self.resolved.into_inner()
-    }
-}
-
-#[derive(Clone, Copy)]
-enum Shape {
-    Uniform,
-    Normal,
-}
-
-impl Shape {
-    fn sample(self, a: f64, b: f64, stream: &mut Stream) -> f64 {
-        match self {
-            Shape::Uniform => a + (b - a) * stream.random::<f64>(),
-            Shape::Normal => {
-                let n: f64 = StandardNormal.sample(stream);
-                a + b * n
-            }
-        }
     }
 }

@@ -5,18 +5,20 @@ use super::section::Section;
 use super::suggest;
 use crate::geometry::Rotation;
 use crate::quantity::Sign;
-use crate::sensor::{self, Mount, Sampling, Sensor, SensorKind, SensorPlan, parts, white_noise};
-use crate::time::SimTime;
+use crate::sensor::{self, Mount, Sampling, SensorKind, SensorPlan, parts, white_noise};
+use crate::time::{Rate, SimTime};
 use glam::DQuat;
 
 pub(super) struct Sensors {
     pub plans: Vec<SensorPlan>,
     pub resolved: Vec<toml::Table>,
+    /// Whether every sensor that the scene names could be read.
+    pub complete: bool,
 }
 
 /// The sensors that the scene has, in order.
 pub(super) fn sensors(top: &Section<'_>) -> Sensors {
-    let mut sensors = Sensors { plans: Vec::new(), resolved: Vec::new() };
+    let mut sensors = Sensors { plans: Vec::new(), resolved: Vec::new(), complete: true };
     for kind in SensorKind::ALL {
         if !top.has(kind.name()) {
             continue;
@@ -27,32 +29,42 @@ pub(super) fn sensors(top: &Section<'_>) -> Sensors {
             sensors.plans.push(plan);
             sensors.resolved.push(section.finish());
         } else {
+            sensors.complete = false;
             section.finish();
         }
     }
     sensors
 }
 
-fn sensor(section: &Section<'_>, kind: SensorKind, part: Option<&'static str>, seed: u64) -> Option<SensorPlan> {
+fn sensor(
+    section: &Section<'_>,
+    kind: SensorKind,
+    part: Option<&'static str>,
+    seed: u64,
+) -> Option<SensorPlan> {
     if !section.has("rate") {
-        section.mistake("rate", format!("[{kind}] needs a rate, such as rate = \"100 Hz\""));
+        section.lacks(format!("[{kind}] needs a rate, such as rate = \"100 Hz\""));
     }
     let rate = section.rate("rate");
-    let phase = section.time("phase", Some("0 s")).unwrap_or(SimTime::ZERO);
+    let phase = section.time("phase", Some("0 s"), Sign::NonNegative).unwrap_or(SimTime::ZERO);
     let sampling = match section.word("sampling", &["point", "average"], "point") {
         "average" => Sampling::Average,
         _ => Sampling::Point,
     };
     let mount = mount(section);
-    let values = section.values(&sensor::keys(kind), true);
-    let plan = SensorPlan { kind, rate: rate?, phase, sampling, mount, part, values };
-    match Sensor::new(&plan, seed) {
-        Ok(_) => Some(plan),
-        Err(error) => {
-            section.mistake(error.key, error.message);
-            None
-        }
+    let keys = sensor::keys(kind);
+    let values = section.values(&keys, true);
+    // What a key or part that could not be read would have said is not missed a second time.
+    if section.unread(&keys, &values) || (section.has("part") && part.is_none()) {
+        return None;
     }
+    let any_rate = rate.unwrap_or(Rate::hz(1));
+    let plan = SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values };
+    let errors = sensor::check(&plan, seed);
+    for error in &errors {
+        section.mistake(error.key, &error.message);
+    }
+    (rate.is_some() && errors.is_empty()).then_some(plan)
 }
 
 /// A right-angle mount by name, or a quaternion from body (as the scene writes it) to chip axes.
@@ -62,16 +74,26 @@ fn mount(section: &Section<'_>) -> Option<Mount> {
             let name = section.text("mount", None)?;
             let mount = Mount::from_name(&name);
             if mount.is_none() {
-                section.mistake("mount", format!("`{name}` is no mount: say where the chip's x, y and z point, right-handed, by three of f(orward) b(ack) r(ight) l(eft) u(p) d(own), such as \"flu\" or \"frd\""));
+                section.mistake("mount", format!("`{name}` is no right-handed mount: three letters say where the chip's x, y and z point, out of f(orward), b(ack), r(ight), l(eft), u(p) and d(own), such as \"flu\" or \"frd\""));
             }
             mount
         }
-        _ => {
+        Value::Array(_) => {
             let [w, x, y, z] = section.quaternion("mount")?;
             let sign = section.axes().body_sign();
             // From the scene's body axes: turned over about x when it writes Forward-Left-Up.
             let flip = if sign < 0.0 { DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0) } else { DQuat::IDENTITY };
             Some(Mount::from_rotation(Rotation::from_quat(DQuat::from_xyzw(x, y, z, w) * flip)))
+        }
+        other => {
+            section.mistake(
+                "mount",
+                format!(
+                    "is {}; write three letters, such as \"flu\", or a quaternion [w, x, y, z]",
+                    other.what()
+                ),
+            );
+            None
         }
     }
 }
@@ -81,8 +103,9 @@ fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'static str> {
     let name = section.text("part", None)?;
     let Some(part) = parts::find(&name) else {
         let names: Vec<_> = parts::all().iter().flat_map(|part| part.names.iter().copied()).collect();
-        let near = suggest::nearest(&name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
-        section.mistake("part", format!("`{name}` is none of the parts known ({}){near}", names.join(", ")));
+        let near = suggest::did_you_mean(&name, names.iter().copied());
+        section
+            .mistake("part", format!("`{name}` is no part known here; there are {}{near}", names.join(", ")));
         return None;
     };
     let table = match Table::parse(part.text, part.file) {
@@ -107,9 +130,12 @@ fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'static str> {
 fn fill(section: &Section<'_>, kind: SensorKind, preset: &Table, mount: Option<&Entry>) -> Vec<Entry> {
     let noise_given = white_noise::KEYS.iter().any(|key| section.has_quietly(key));
     let open = |key: &str| !section.has_quietly(key) && !(noise_given && white_noise::KEYS.contains(&key));
-    let mut fill: Vec<Entry> = preset.entries.iter().filter(|entry| open(&entry.key)).filter_map(preset_value).collect();
+    let mut fill: Vec<Entry> =
+        preset.entries.iter().filter(|entry| open(&entry.key)).filter_map(preset_value).collect();
     fill.extend(mount.filter(|_| open("mount")).cloned());
-    if open("resolution") && let Some(resolution) = resolution(section, kind, preset) {
+    if open("resolution")
+        && let Some(resolution) = resolution(section, kind, preset)
+    {
         fill.retain(|entry| entry.key != "resolution");
         fill.push(resolution);
     }
@@ -141,47 +167,23 @@ fn resolution(section: &Section<'_>, kind: SensorKind, preset: &Table) -> Option
         _ => None,
     };
     let scales: Vec<_> = scales.iter().filter_map(scale).collect();
-    let found = scales.iter().find(|(range, _)| measure(range).is_some_and(|x| (x / wanted - 1.0).abs() < 1e-9));
+    let found =
+        scales.iter().find(|(range, _)| measure(range).is_some_and(|x| (x / wanted - 1.0).abs() < 1e-9));
     if found.is_none() {
-        let ranges: Vec<_> = scales.iter().filter_map(|(range, _)| match &range.value {
-            Value::Text(text) => Some(text.clone()),
-            _ => None,
-        }).collect();
-        section.mistake("range", format!("the part has no such range: choose one of {}, or give a `resolution` too", ranges.join(", ")));
+        let ranges: Vec<_> = scales
+            .iter()
+            .filter_map(|(range, _)| match &range.value {
+                Value::Text(text) => Some(text.clone()),
+                _ => None,
+            })
+            .collect();
+        section.mistake(
+            "range",
+            format!(
+                "the part has no such range: choose one of {}, or give a `resolution` beside it",
+                ranges.join(", ")
+            ),
+        );
     }
     found.map(|(_, resolution)| resolution.clone())
-}
-
-/// Whether every value of every part names where it comes from; used by the parts' own test and by `list`.
-pub fn part_sources(part: &parts::Part) -> Result<Vec<parts::Sourced>, String> {
-    let table = Table::parse(part.text, part.file).map_err(|mistake| mistake.to_string())?;
-    let mut sourced = Vec::new();
-    for kind in SensorKind::ALL {
-        let Some(Value::Table(preset)) = table.get(kind.name()).map(|entry| &entry.node.value) else { continue };
-        for entry in preset.entries.iter().filter(|entry| entry.key != "scales") {
-            sourced.push(source_of(kind, entry)?);
-        }
-    }
-    Ok(sourced)
-}
-
-fn source_of(kind: SensorKind, entry: &Entry) -> Result<parts::Sourced, String> {
-    let text = |table: &Table, key: &str| match table.get(key).map(|entry| &entry.node.value) {
-        Some(Value::Text(text)) => Some(text.clone()),
-        Some(Value::Table(table)) => table.entries.first().map(|entry| format!("{} {}", entry.key, texts(&entry.node.value))),
-        _ => None,
-    };
-    let Value::Table(table) = &entry.node.value else { return Err(format!("{}: `{}` has no source", entry.place, entry.key)) };
-    let (Some(value), Some(source)) = (text(table, "value"), text(table, "source")) else {
-        return Err(format!("{}: `{}` needs a value and a source", entry.place, entry.key));
-    };
-    Ok(parts::Sourced { sensor: kind, key: entry.key.clone(), value, source })
-}
-
-fn texts(value: &Value) -> String {
-    match value {
-        Value::Text(text) => text.clone(),
-        Value::Array(nodes) => nodes.iter().map(|node| texts(&node.value)).collect::<Vec<_>>().join(" to "),
-        other => other.what().to_string(),
-    }
 }

@@ -11,14 +11,39 @@ pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(name, _)| name)
 }
 
-/// What a key known from another tool is called here.
-pub fn elsewhere(key: &str) -> Option<&'static str> {
+/// The question to end a refusal with: whether the nearest name was meant, if one is near.
+pub fn did_you_mean<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(given, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"))
+}
+
+/// What a key known from another tool, or from another table, is called in the table `path` (empty: the scene).
+pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
+    if !["", "gyro", "accel", "mag"].contains(&path) {
+        return None;
+    }
     let answer = match key {
-        "gyroscope_noise_density" => "is Kalibr's name; here it is `angle_random_walk` in [gyro] (Kalibr's densities are two-sided)",
-        "accelerometer_noise_density" => "is Kalibr's name; here it is `velocity_random_walk` in [accel] (Kalibr's densities are two-sided)",
-        "gyroscope_random_walk" | "accelerometer_random_walk" => "is Kalibr's name; here it is `bias_random_walk` in [gyro] or [accel]",
+        "angle_random_walk" if path == "accel" => {
+            "is a gyro's; an accelerometer has a `velocity_random_walk`"
+        }
+        "velocity_random_walk" if path == "gyro" => {
+            "is an accelerometer's; a gyro has an `angle_random_walk`"
+        }
+        "angle_random_walk" | "velocity_random_walk" if path == "mag" => {
+            "has no meaning for a magnetometer: give a `noise_density`, which is √2 times the Allan deviation at 1 s"
+        }
+        "gyroscope_noise_density" => {
+            "is Kalibr's name; here it is `angle_random_walk` in [gyro] (Kalibr's densities are two-sided)"
+        }
+        "accelerometer_noise_density" => {
+            "is Kalibr's name; here it is `velocity_random_walk` in [accel] (Kalibr's densities are two-sided)"
+        }
+        "gyroscope_random_walk" | "accelerometer_random_walk" => {
+            "is Kalibr's name; here it is `bias_random_walk` in [gyro] or [accel]"
+        }
         "update_rate" => "is Kalibr's name; here it is `rate`",
-        "NoiseDensity" => "is MATLAB's name; here it is `noise_density` (its single-sided NoiseType) or `angle_random_walk` (its double-sided one)",
+        "NoiseDensity" => {
+            "is MATLAB's name; here it is `noise_density` (its single-sided NoiseType) or `angle_random_walk` (its double-sided one)"
+        }
         "MeasurementRange" => "is MATLAB's name; here it is `range`",
         "Resolution" => "is MATLAB's name; here it is `resolution`",
         "ConstantBias" => "is MATLAB's name; here it is `bias`",
@@ -32,10 +57,22 @@ pub fn elsewhere(key: &str) -> Option<&'static str> {
         "vrw" | "VRW" => "is spelled `velocity_random_walk` here",
         "AxesMisalignment" | "misalignment" | "scale_error" | "matrix" | "nonlinearity" | "g_sensitivity"
         | "temperature" | "bias_temperature" | "scale_temperature" | "filter" | "delay" | "clock_error"
-        | "hard_iron" | "soft_iron" | "lever_arm" | "vibration" => "names an effect that this version does not model",
+        | "hard_iron" | "soft_iron" | "lever_arm" | "vibration" => {
+            "names an effect that this version does not model"
+        }
         _ => return None,
     };
     Some(answer)
+}
+
+/// What would say what a refused value meant: something to end the refusal with, or nothing.
+pub fn instead(key: &str, text: &str) -> &'static str {
+    let endless = text.to_lowercase().contains("inf") || text.contains('∞');
+    if key == "correlation_time" && endless {
+        ": a bias that never forgets is `bias_random_walk`"
+    } else {
+        ""
+    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::double::Double;
 use crate::earth::{self, Day};
 use crate::geometry::{Attitude, Euler, Nav, Vector};
 use crate::motion::{self, Context, Force, Motion, Push};
-use crate::quantity::Kind;
+use crate::quantity::{self, Kind, Sign};
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -26,7 +26,7 @@ pub(super) fn start(top: &Section<'_>) -> Start {
     let section = top.table("start");
     let q = if section.has("quaternion") {
         if section.has("attitude") {
-            section.mistake("quaternion", "`attitude` already gives it: keep one of the two");
+            section.mistake("quaternion", "`attitude` already says how it starts: keep one of the two");
         }
         section.quaternion("quaternion").map(|[w, x, y, z]| DQuat::from_xyzw(x, y, z, w))
     } else {
@@ -54,7 +54,7 @@ pub(super) fn earth(top: &Section<'_>) -> Earth {
     let day = section.text("date", None).and_then(|text| {
         let day = Day::parse(&text);
         if day.is_none() {
-            section.mistake("date", format!("`{text}` is no date: write it as \"2026-11-22\""));
+            section.mistake("date", format!("`{text}` is no date: write it as in \"2026-11-22\""));
         }
         day
     });
@@ -62,14 +62,14 @@ pub(super) fn earth(top: &Section<'_>) -> Earth {
         gravity(&section)
     } else {
         let strength = place.map_or(earth::STANDARD_GRAVITY, earth::normal_gravity);
-        section.resolve("gravity", crate::quantity::text_scalar(strength, "m/s^2"));
+        section.resolve("gravity", quantity::text_scalar(strength, "m/s^2"));
         Vector::new(0.0, 0.0, strength)
     };
     let field = if section.has("field") {
         section.vector("field", Kind::FIELD, None).map_or(Vector::ZERO, |field| axes.nav_in(plain(field)))
     } else {
         let field = modelled_field(&section, place, day);
-        section.resolve("field", crate::quantity::text_vector(axes.nav_out(field).to_array(), "uT"));
+        section.resolve("field", quantity::text_vector(axes.nav_out(field).to_array(), "uT"));
         field
     };
     Earth { gravity, field, day, resolved: section.finish() }
@@ -77,27 +77,37 @@ pub(super) fn earth(top: &Section<'_>) -> Earth {
 
 /// One number pulls straight down; a vector is the acceleration of free fall in nav axes.
 fn gravity(section: &Section<'_>) -> Vector<Nav> {
-    let is_vector = section.entry("gravity").is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text.contains('[')));
-    let Some(given) = section.vector("gravity", Kind::ACCELERATION, None).map(plain) else { return Vector::ZERO };
+    let is_vector = section
+        .entry("gravity")
+        .is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text.contains('[')));
     if is_vector {
-        return section.axes().nav_in(given);
+        let given = section.vector("gravity", Kind::ACCELERATION, None).map(plain);
+        return section.axes().nav_in(given.unwrap_or_default());
     }
-    if given.x < 0.0 {
-        section.mistake("gravity", format!("{} is negative: one number is the strength of gravity, which pulls down", given.x));
-    }
-    Vector::new(0.0, 0.0, given.z)
+    let strength = section.scalar("gravity", Kind::ACCELERATION.signed(Sign::NonNegative), None);
+    Vector::new(0.0, 0.0, strength.unwrap_or_default())
 }
 
 fn modelled_field(section: &Section<'_>, place: Option<earth::Place>, day: Option<Day>) -> Vector<Nav> {
     let Some(place) = place else { return earth::default_field() };
     let Some(day) = day else {
         if !section.has("date") {
-            section.mistake("latitude", "the field at a place depends on the date: add date = \"2026-11-22\", or give `field`");
+            section.mistake("latitude", "the magnetic field at a place depends on the day: add a `date`, such as \"2026-11-22\", or give `field` itself");
         }
         return earth::default_field();
     };
+    if !(-1e3..=850e3).contains(&place.altitude) {
+        section.mistake(
+            "altitude",
+            "the World Magnetic Model reaches from -1 km to 850 km: give `field` itself",
+        );
+        return earth::default_field();
+    }
     earth::magnetic_field(place, day).unwrap_or_else(|why| {
-        section.mistake("date", format!("the World Magnetic Model has no field for it: {why}"));
+        section.mistake(
+            "date",
+            format!("the World Magnetic Model has no field for it ({why}): give `field` itself"),
+        );
         earth::default_field()
     })
 }
@@ -106,18 +116,26 @@ fn place(section: &Section<'_>) -> Option<earth::Place> {
     let latitude = section.scalar("latitude", Kind::ANGLE, None);
     let longitude = section.scalar("longitude", Kind::ANGLE, None);
     let altitude = section.scalar("altitude", Kind::LENGTH, None);
-    for (key, other, angle, limit) in [("latitude", "longitude", latitude, FRAC_PI_2), ("longitude", "latitude", longitude, 2.0 * PI)] {
+    let mut inside = true;
+    for (key, other, angle, limit) in
+        [("latitude", "longitude", latitude, FRAC_PI_2), ("longitude", "latitude", longitude, 2.0 * PI)]
+    {
         if section.has(key) && !section.has(other) {
             section.mistake(key, format!("a place needs a `{other}` too"));
         }
         if let Some(angle) = angle.filter(|angle| angle.abs() > limit) {
-            section.mistake(key, format!("{} deg is beyond ±{} deg", angle.to_degrees(), limit.to_degrees()));
+            inside = false;
+            let given = quantity::text_scalar(angle, "deg");
+            section.mistake(key, format!("{given} is beyond ±{} deg", limit.to_degrees()));
         }
     }
-    if section.has("altitude") && !section.has("latitude") {
+    if section.has("altitude") && !section.has("latitude") && !section.has("longitude") {
         section.mistake("altitude", "an altitude needs a `latitude` and a `longitude` too");
     }
-    Some(earth::Place { latitude: latitude?, longitude: longitude?, altitude: altitude.unwrap_or(0.0) })
+    let (latitude, longitude) = (latitude?, longitude?);
+    // 190° east is 170° west.
+    let longitude = longitude - 2.0 * PI * libm::round(longitude / (2.0 * PI));
+    inside.then_some(earth::Place { latitude, longitude, altitude: altitude.unwrap_or(0.0) })
 }
 
 pub(super) struct Motions {
@@ -139,29 +157,35 @@ fn motion(section: &Section<'_>, gravity: f64) -> Option<(SimTime, Box<dyn Motio
     let names = motion::KINDS.map(|kind| kind.name);
     let Some(name) = section.text("kind", None) else {
         if !section.has("kind") {
-            section.mistake("kind", format!("a motion needs a kind: {}", names.join(", ")));
+            section.lacks(format!(
+                "a motion needs a kind, such as kind = \"rotate\", one of {}",
+                names.join(", ")
+            ));
         }
         section.allow_everything();
         return None;
     };
     let Some(kind) = motion::KINDS.into_iter().find(|kind| kind.name == name) else {
-        let near = suggest::nearest(&name, names).map_or(String::new(), |near| format!(", perhaps `{near}`"));
-        section.mistake("kind", format!("`{name}` is none of {}{near}", names.join(", ")));
+        let near = suggest::did_you_mean(&name, names);
+        section
+            .mistake("kind", format!("`{name}` is no kind of motion; there are {}{near}", names.join(", ")));
         section.allow_everything();
         return None;
     };
-    let values = section.values(kind.keys, false);
+    section.call(format!("a `{name}` motion"));
     if !section.has("duration") {
-        section.mistake("duration", "a motion needs a duration, such as \"5 s\"");
+        section.lacks("a motion needs a duration, such as duration = \"5 s\"".into());
     }
-    let duration = section.time("duration", None)?;
-    let unread = kind.keys.iter().any(|key| section.has(key.name) && !values.has(key.name));
-    if unread {
+    let duration = section.time("duration", None, Sign::Positive);
+    let values = section.values(kind.keys, false);
+    if section.unread(kind.keys, &values) {
         return None;
     }
-    let context = Context { duration, gravity, body_sign: section.axes().body_sign() };
+    // Where the duration is a mistake already, nothing else is blamed on it.
+    let in_time = duration.unwrap_or(SimTime::FOREVER);
+    let context = Context { duration: in_time, gravity, body_sign: section.axes().body_sign() };
     match (kind.build)(&values, &context) {
-        Ok(motion) => Some((duration, motion)),
+        Ok(motion) => Some((duration?, motion)),
         Err(error) => {
             section.mistake(error.key, error.message);
             None
@@ -185,13 +209,13 @@ pub(super) fn forces(top: &Section<'_>) -> Forces {
 }
 
 fn force(section: &Section<'_>) -> Option<Force> {
-    let start = section.time("start", Some("0 s"));
+    let start = section.time("start", Some("0 s"), Sign::NonNegative);
     for (key, example) in [("duration", "2 s"), ("acceleration", "[0, 1.5, 0] m/s^2")] {
         if !section.has(key) {
-            section.mistake(key, format!("a force needs it: {key} = \"{example}\""));
+            section.lacks(format!("a force needs its {key}, such as {key} = \"{example}\""));
         }
     }
-    let duration = section.time("duration", None);
+    let duration = section.time("duration", None, Sign::Positive);
     let acceleration = section.vector("acceleration", Kind::ACCELERATION, None);
     let frame = section.word("frame", &["body", "nav"], "body");
     let (start, acceleration) = (start?, plain(acceleration?));

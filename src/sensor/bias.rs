@@ -2,6 +2,7 @@
 
 use super::{Block, Stage, Term, TermKind};
 use crate::keys::{Key, Takes};
+use crate::quantity::Sign;
 use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -12,10 +13,15 @@ pub(super) static KIND: TermKind = TermKind {
     keys: |sensor| {
         let reading = sensor.units().reading;
         vec![
-            Key { name: "bias", takes: Takes::BodyVector(reading), default: Some("0"), about: "turn-on bias" },
+            Key {
+                name: "bias",
+                takes: Takes::BodyVector(reading),
+                default: Some("0"),
+                about: "turn-on bias",
+            },
             Key {
                 name: "bias_std",
-                takes: Takes::PerAxis(reading),
+                takes: Takes::PerAxis(reading.signed(Sign::NonNegative)),
                 default: Some("0"),
                 about: "standard deviation of a turn-on bias drawn once a run and added to `bias`",
             },

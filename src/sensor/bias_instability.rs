@@ -6,7 +6,7 @@
 
 use super::{Block, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes};
-use crate::quantity::Kind;
+use crate::quantity::{Kind, Sign};
 use crate::random::Stream;
 use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
@@ -20,7 +20,7 @@ pub(super) static KIND: TermKind = TermKind {
         vec![
             Key {
                 name: "bias_instability",
-                takes: Takes::PerAxis(reading),
+                takes: Takes::PerAxis(reading.signed(Sign::NonNegative)),
                 default: Some("0"),
                 about: "stationary standard deviation of the wandering bias; needs `correlation_time`",
             },
@@ -43,11 +43,17 @@ pub(super) static KIND: TermKind = TermKind {
         let Some(tau) = values.vector("correlation_time") else {
             return match sigma == DVec3::ZERO {
                 true => Ok(None),
-                false => Err(KeyError::new("bias_instability", "needs a `correlation_time` beside it, such as \"500 s\"; for a bias that wanders without bound use `bias_random_walk`")),
+                false => Err(KeyError::new(
+                    "bias_instability",
+                    "needs a `correlation_time` beside it, such as \"500 s\"; a bias that wanders without bound is `bias_random_walk`",
+                )),
             };
         };
         if tau.min_element() <= 0.0 {
-            return Err(KeyError::new("correlation_time", "a correlation time is above 0; a bias renewed at each sample is white noise: use `noise_std`"));
+            return Err(KeyError::new(
+                "correlation_time",
+                "a correlation time is above 0; a bias that is new at each sample is white noise, `noise_std`",
+            ));
         }
         if sigma == DVec3::ZERO {
             return Ok(None);
@@ -57,7 +63,8 @@ pub(super) static KIND: TermKind = TermKind {
         let fresh = DVec3::from_array(steps.to_array().map(|x| libm::sqrt(-libm::expm1(-2.0 * x))));
         let mut streams = context.streams("bias_instability");
         let start = DVec3::from_array(streams.each_mut().map(|stream| StandardNormal.sample(stream)));
-        let bias = if values.word("bias_instability_start") == Some("zero") { DVec3::ZERO } else { sigma * start };
+        let bias =
+            if values.word("bias_instability_start") == Some("zero") { DVec3::ZERO } else { sigma * start };
         Ok(Some(Box::new(GaussMarkov { bias, decay, step: sigma * fresh, streams })))
     },
 };

@@ -5,6 +5,7 @@
 
 use super::{Block, Context, Stage, Term, TermKind};
 use crate::keys::{Key, Takes, Values};
+use crate::quantity::Sign;
 use crate::random::Stream;
 use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
@@ -18,7 +19,7 @@ pub(super) static KIND: TermKind = TermKind {
         vec![
             Key {
                 name: "bias_step_std",
-                takes: Takes::PerAxis(units.reading),
+                takes: Takes::PerAxis(units.reading.signed(Sign::NonNegative)),
                 default: Some("0"),
                 about: "standard deviation of the bias's step each sample (the paper's n_b)",
             },
@@ -41,7 +42,8 @@ pub(super) static KIND: TermKind = TermKind {
 /// The σ of one step; the two independent walks add in variance.
 fn step(values: &Values, context: &Context) -> DVec3 {
     let per_sample = values.vector("bias_step_std").unwrap_or_default();
-    let per_root_second = values.vector("bias_random_walk").unwrap_or_default() * libm::sqrt(context.rate.period());
+    let per_root_second =
+        values.vector("bias_random_walk").unwrap_or_default() * libm::sqrt(context.rate.period());
     DVec3::from_array([0, 1, 2].map(|axis| libm::hypot(per_sample[axis], per_root_second[axis])))
 }
 

@@ -67,7 +67,11 @@ impl Mount {
     }
 
     /// Changes columns of body components on the chip's axes: `change` gets the sample's index and components.
-    pub(super) fn on_chip(self, columns: &mut [Vec<f64>; 3], mut change: impl FnMut(usize, [f64; 3]) -> [f64; 3]) {
+    pub(super) fn on_chip(
+        self,
+        columns: &mut [Vec<f64>; 3],
+        mut change: impl FnMut(usize, [f64; 3]) -> [f64; 3],
+    ) {
         let [x, y, z] = columns;
         let same_axes = self.to_chip == DMat3::IDENTITY;
         for (i, ((x, y), z)) in x.iter_mut().zip(y).zip(z).enumerate() {

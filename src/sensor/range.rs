@@ -3,7 +3,8 @@
 use super::mount::Mount;
 use super::resolution::{self, Converter};
 use super::{Block, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Takes};
+use crate::keys::{Key, Takes};
+use crate::quantity::Sign;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "range",
@@ -12,16 +13,13 @@ pub(super) static KIND: TermKind = TermKind {
     keys: |sensor| {
         vec![Key {
             name: "range",
-            takes: Takes::Scalar(sensor.units().reading),
+            takes: Takes::Scalar(sensor.units().reading.signed(Sign::Positive)),
             default: None,
             about: "full scale: readings are clipped to ± this on the chip's axes",
         }]
     },
     build: |values, context| {
         let Some(range) = values.scalar("range") else { return Ok(None) };
-        if range <= 0.0 {
-            return Err(KeyError::new("range", "a range is above 0"));
-        }
         let limits = match resolution::converter(values, context.sensor)? {
             Some(Converter { lsb, counts: Some((low, high)) }) => (low * lsb, high * lsb),
             _ => (-range, range),

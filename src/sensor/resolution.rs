@@ -3,7 +3,7 @@
 use super::mount::Mount;
 use super::{Block, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};
-use crate::quantity::Resolution;
+use crate::quantity::{self, Resolution};
 
 pub(super) static KIND: TermKind = TermKind {
     name: "resolution",
@@ -18,8 +18,9 @@ pub(super) static KIND: TermKind = TermKind {
         }]
     },
     build: |values, context| {
-        Ok(converter(values, context.sensor)?
-            .map(|converter| Box::new(Quantise { lsb: converter.lsb, mount: context.mount }) as Box<dyn Term>))
+        Ok(converter(values, context.sensor)?.map(|converter| {
+            Box::new(Quantise { lsb: converter.lsb, mount: context.mount }) as Box<dyn Term>
+        }))
     },
 };
 
@@ -44,10 +45,21 @@ pub(super) fn converter(values: &Values, sensor: SensorKind) -> Result<Option<Co
         (Resolution::Step(lsb), _) => lsb.to_f64(),
         (Resolution::Bits(bits), Some(range)) => range / libm::exp2(f64::from(bits) - 1.0),
         (Resolution::Bits(_), None) => {
-            let message = format!("bits need a `range` beside them; or give the size of a count, such as \"1e-4 {}\"", sensor.unit());
+            let message = format!(
+                "bits need a `range` beside them; or give the size of a count, such as \"1e-4 {}\"",
+                sensor.unit()
+            );
             return Err(KeyError::new("resolution", message));
         }
     };
+    if let Some(range) = range.filter(|&range| lsb > range) {
+        let (count, range) =
+            (quantity::text_scalar(lsb, sensor.unit()), quantity::text_scalar(range, sensor.unit()));
+        return Err(KeyError::new(
+            "resolution",
+            format!("one count, {count}, is more than the whole range of ±{range}"),
+        ));
+    }
     Ok(Some(Converter { lsb, counts: range.and_then(|range| two_complement(range / lsb)) }))
 }
 

@@ -7,7 +7,7 @@
 
 use super::{Block, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};
-use crate::quantity::Kind;
+use crate::quantity::{Kind, Sign};
 use crate::random::Stream;
 use crate::time::Rate;
 use glam::DVec3;
@@ -20,7 +20,11 @@ pub(super) static KIND: TermKind = TermKind {
     keys: |sensor| {
         let units = sensor.units();
         let mut keys = vec![
-            key("noise_std", units.reading, "standard deviation of each sample, whatever the rate"),
+            key(
+                "noise_std",
+                units.reading.signed(Sign::NonNegative),
+                "standard deviation of each sample, whatever the rate",
+            ),
             key("noise_variance", units.variance, "variance of each sample, whatever the rate (the paper's)"),
             key("noise_density", units.density, "one-sided density, as datasheets print it: σ = N·√(rate/2)"),
         ];
@@ -31,8 +35,9 @@ pub(super) static KIND: TermKind = TermKind {
     },
     build: |values, context| {
         let sigma = sigma(values, context.sensor, context.rate)?;
-        Ok((sigma != DVec3::ZERO)
-            .then(|| Box::new(WhiteNoise { sigma, streams: context.streams("white_noise") }) as Box<dyn Term>))
+        Ok((sigma != DVec3::ZERO).then(|| {
+            Box::new(WhiteNoise { sigma, streams: context.streams("white_noise") }) as Box<dyn Term>
+        }))
     },
 };
 
@@ -47,21 +52,23 @@ fn key(name: &'static str, kind: Kind, about: &'static str) -> Key {
 /// The standard deviation of one sample at the given rate, per axis, in the reading's unit.
 ///
 /// # Errors
-/// A negative value, or two keys for one axis.
+/// Two keys for one axis.
 pub fn sigma(values: &Values, sensor: SensorKind, rate: Rate) -> Result<DVec3, KeyError> {
     let mut sigma = DVec3::ZERO;
-    let mut first: Option<(&str, DVec3)> = None;
+    let mut before: Vec<(&str, DVec3)> = Vec::new();
     for key in KEYS {
         let Some(given) = values.vector(key) else { continue };
-        if given.min_element() < 0.0 {
-            return Err(KeyError::new(key, "the size of a noise is not negative"));
+        // One that is zero throughout says as much of every axis as any other.
+        let clash = |other: DVec3| {
+            other == DVec3::ZERO || given == DVec3::ZERO || (other * given).abs().max_element() > 0.0
+        };
+        if let Some((other, _)) = before.iter().find(|(_, other)| clash(*other)) {
+            return Err(KeyError::new(
+                key,
+                format!("the {sensor}'s white noise is given by `{other}` already: keep one of the two"),
+            ));
         }
-        if let Some((other, before)) = first
-            && (0..3).any(|axis| before[axis] * given[axis] != 0.0 || (before == DVec3::ZERO || given == DVec3::ZERO))
-        {
-            return Err(KeyError::new(key, format!("`{other}` already gives the {sensor}'s white noise: keep one of the two")));
-        }
-        first = Some((key, given));
+        before.push((key, given));
         sigma += per_sample(key, given, rate);
     }
     Ok(sigma)

@@ -26,8 +26,11 @@ pub struct Listener {
 impl Listener {
     /// For the answers of a protocol, or `None` if it has none that echo scene time.
     pub fn new(protocol: Protocol) -> Option<Listener> {
-        (protocol == Protocol::Mpu)
-            .then(|| Listener { decoder: mpu::Decoder::new(), newest: SimTime::ZERO, damaged: 0 })
+        (protocol == Protocol::Mpu).then(|| Listener {
+            decoder: mpu::Decoder::new(),
+            newest: SimTime::ZERO,
+            damaged: 0,
+        })
     }
 
     /// Takes bytes in as they arrive and hands on every estimate in them.
@@ -69,6 +72,10 @@ mod tests {
             t = unwrapped(us as u32, t);
             assert_eq!(t.0, us * 1000);
         }
-        assert_eq!(unwrapped(4_294_000_000, SimTime(4_295_000_000_000)).0, 4_294_000_000_000, "and back a little");
+        assert_eq!(
+            unwrapped(4_294_000_000, SimTime(4_295_000_000_000)).0,
+            4_294_000_000_000,
+            "and back a little"
+        );
     }
 }

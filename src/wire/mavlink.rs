@@ -66,7 +66,8 @@ impl Mavlink {
 
     fn hil_sensor(&self, t: SimTime) -> Message {
         let value = |kind: SensorKind, unit: f64| {
-            self.newest.values[kind as usize].map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
+            self.newest.values[kind as usize]
+                .map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
         };
         let fresh = (0..3).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
         Message::HilSensor(hil_sensor::Repr {

@@ -37,9 +37,12 @@ impl Mpu {
         let chip = if is_60x0 { Chip::Mpu60x0 } else { Chip::Mpu9250 };
         let dps = 1f64.to_radians();
         let (gyro_config, gyro_count) = scale(gyro, |config| dps / registers::gyro_lsb_per_dps(config));
-        let (accel_config, accel_count) = scale(accel, |config| STANDARD_GRAVITY / registers::accel_lsb_per_g(config));
-        let mount = |sensor: Option<&SensorPlan>| sensor.and_then(|sensor| sensor.mount).unwrap_or_else(Mount::flu);
-        let fastest = [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+        let (accel_config, accel_count) =
+            scale(accel, |config| STANDARD_GRAVITY / registers::accel_lsb_per_g(config));
+        let mount =
+            |sensor: Option<&SensorPlan>| sensor.and_then(|sensor| sensor.mount).unwrap_or_else(Mount::flu);
+        let fastest =
+            [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
         Mpu {
             seq: 0,
             seconds: EverySecond::default(),
@@ -55,7 +58,11 @@ impl Mpu {
                 asa: [ASA; 3],
             },
             temperature: chip.temperature_raw(TEMPERATURE_C),
-            scales: [(mount(gyro), gyro_count), (mount(accel), accel_count), (mount(mag), registers::mag_ut_per_lsb(ASA, true))],
+            scales: [
+                (mount(gyro), gyro_count),
+                (mount(accel), accel_count),
+                (mount(mag), registers::mag_ut_per_lsb(ASA, true)),
+            ],
             burst: burst(setup, gyro, accel),
         }
     }
@@ -93,10 +100,15 @@ impl Mpu {
             SensorKind::Gyro => mpu::Packet::Gyro(gyro::Repr { gyro: self.counts(kind) }),
             SensorKind::Accel => mpu::Packet::Accel(accel::Repr { accel: self.counts(kind) }),
             SensorKind::Mag => {
-                let (_, count) = self.scales[kind as usize];
-                let field = self.newest.values[kind as usize].map_or(0.0, |reading| reading.value.length());
-                // AK8963: the sum of the three components overflows at 4912 µT, the full scale.
-                let overflow = if field > f64::from(registers::MAG_MAX_COUNT) * count { registers::ST2_OVERFLOW } else { 0 };
+                let (mount, count) = self.scales[kind as usize];
+                // AK8963 (MS1356-E): it overflows when |X| + |Y| + |Z| reaches the full scale.
+                let sum = |reading: &Reading| mount.to_chip(reading.value).v.abs().element_sum();
+                let field = self.newest.values[kind as usize].as_ref().map_or(0.0, sum);
+                let overflow = if field > f64::from(registers::MAG_MAX_COUNT) * count {
+                    registers::ST2_OVERFLOW
+                } else {
+                    0
+                };
                 mpu::Packet::Mag(mag::Repr {
                     st1: registers::ST1_DATA_READY,
                     field: self.counts(kind),
@@ -114,10 +126,8 @@ impl Encoder for Mpu {
             self.push(second, 0, &config, out);
         }
         self.newest.take_in(readings);
-        if let Some(carrier) = self.burst {
-            if readings.iter().any(|reading| reading.kind == carrier) {
-                self.push(t, IMU, &self.imu(), out);
-            }
+        if self.burst.is_some_and(|carrier| readings.iter().any(|reading| reading.kind == carrier)) {
+            self.push(t, IMU, &self.imu(), out);
         }
         for kind in readings.iter().map(|reading| reading.kind) {
             if self.burst.is_none() || kind == SensorKind::Mag {
@@ -131,13 +141,18 @@ impl Encoder for Mpu {
     }
 }
 
+/// A nominal full scale is up to this much above what 16 bits hold: 1000 °/s at 32.8 LSB/(°/s) is 32 800 counts.
+const NOMINAL: f64 = 1.01;
+
 /// The full-scale bits whose count is the scene's, else the least scale that holds its range, else the largest.
 fn scale(sensor: Option<&SensorPlan>, count: impl Fn(u8) -> f64) -> (u8, f64) {
-    let scales = [0, 1, 2, 3].map(|bits| (registers::full_scale_bits(bits), count(registers::full_scale_bits(bits))));
+    let scales =
+        [0, 1, 2, 3].map(|bits| (registers::full_scale_bits(bits), count(registers::full_scale_bits(bits))));
     let wanted = sensor.and_then(|sensor| lsb(&sensor.values, sensor.kind));
     let exact = scales.iter().find(|(_, count)| wanted.is_some_and(|lsb| (lsb / count - 1.0).abs() < 1e-6));
     let range = sensor.and_then(|sensor| sensor.values.scalar("range"));
-    let holding = scales.iter().find(|(_, count)| range.is_some_and(|range| range <= 32768.0 * count));
+    let holding =
+        scales.iter().find(|(_, count)| range.is_some_and(|range| range <= NOMINAL * 32768.0 * count));
     *exact.or(holding).unwrap_or(&scales[3])
 }
 

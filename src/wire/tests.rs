@@ -1,0 +1,466 @@
+//! What the encoders make, read back by the decoders that a firmware uses.
+
+use super::*;
+use crate::earth::STANDARD_GRAVITY;
+use crate::geometry::Vector;
+use crate::player::Player;
+use crate::scene::Plan;
+use crate::sensor::Mount;
+use crate::time::Rate;
+use proptest::prelude::*;
+use ratetable_protocols::mavlink::{self, Message, hil_sensor};
+use ratetable_protocols::mpu::{self, config, registers};
+
+fn plan(text: &str) -> Plan {
+    Plan::parse(text, "s", "s", &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn setup(plan: &Plan, layout: Option<Layout>) -> Setup<'_> {
+    Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: Options { layout } }
+}
+
+/// Every packet of a plan, and every reading with its time.
+fn play(plan: &Plan, protocol: Protocol, layout: Option<Layout>) -> (Vec<Packet>, Vec<(SimTime, Reading)>) {
+    let mut encoder = encoder(protocol, &setup(plan, layout));
+    let (mut packets, mut readings) = (Vec::new(), Vec::new());
+    let played: Result<(), ()> = Player::new(plan, plan.duration, 256).play(|moment| {
+        encoder.encode(moment.t, moment.readings, &mut packets);
+        readings.extend(moment.readings.iter().map(|reading| (moment.t, *reading)));
+        Ok(())
+    });
+    played.unwrap();
+    assert!(packets.windows(2).all(|pair| pair[0].due <= pair[1].due), "due times never go back");
+    (packets, readings)
+}
+
+/// The `mpu` packets as a driver sees them, each with what it was sent as.
+fn driven(packets: &[Packet]) -> Vec<(&Packet, mpu::Packet)> {
+    let mut decoder = mpu::Decoder::new();
+    let mut all = Vec::new();
+    for (i, packet) in packets.iter().enumerate() {
+        let mut found = Vec::new();
+        decoder.feed(packet.bytes(), |received| found.push(received.unwrap()));
+        let [received] = found[..] else { panic!("one packet a packet: {found:?}") };
+        assert_eq!(received.seq, i as u8, "`seq` counts every packet");
+        assert_eq!(i64::from(received.t_us), packet.due.0 / 1000);
+        all.push((packet, received.packet));
+    }
+    all
+}
+
+fn of(readings: &[(SimTime, Reading)], kind: SensorKind) -> Vec<&(SimTime, Reading)> {
+    readings.iter().filter(|(_, reading)| reading.kind == kind).collect()
+}
+
+/// Counts on the chip's axes, z up, against the reading: within half a count.
+fn counts_match(counts: [i16; 3], reading: &Reading, count: f64) {
+    let chip = Mount::flu().to_chip(reading.value).v.to_array();
+    for (raw, value) in counts.iter().zip(chip) {
+        assert!(
+            (f64::from(*raw) * count - value).abs() <= 0.5 * count * (1.0 + 1e-9),
+            "{counts:?} of {chip:?}"
+        );
+    }
+}
+
+const GYRO_COUNT: f64 = std::f64::consts::PI / 180.0 / 16.4;
+const ACCEL_COUNT: f64 = STANDARD_GRAVITY / 2048.0;
+
+const NOISY: &str = r#"
+seed = 2
+[[motion]]
+kind = "rotate"
+angular_rate = "[200, -300, 400] deg/s"
+duration = "2.5 s"
+[gyro]
+rate = "200 Hz"
+noise_std = "1 deg/s"
+[accel]
+rate = "200 Hz"
+noise_std = "1 m/s^2"
+[mag]
+rate = "50 Hz"
+noise_std = "1 uT"
+"#;
+
+#[test]
+fn mpu_packs_gyro_and_accel_together_when_they_tick_alike() {
+    let (packets, readings) = play(&plan(NOISY), Protocol::Mpu, None);
+    let (gyro, accel, mag) =
+        (of(&readings, SensorKind::Gyro), of(&readings, SensorKind::Accel), of(&readings, SensorKind::Mag));
+    let (mut imus, mut mags, mut configs) = (0, 0, Vec::new());
+    for (packet, seen) in driven(&packets) {
+        match seen {
+            mpu::Packet::Imu(imu) => {
+                assert_eq!((packet.due, packet.carries), (gyro[imus].0, 0b011));
+                counts_match(imu.gyro, &gyro[imus].1, GYRO_COUNT);
+                counts_match(imu.accel, &accel[imus].1, ACCEL_COUNT);
+                assert_eq!(imu.temperature, 1335, "(25 °C − 21 °C)·333.87");
+                imus += 1;
+            }
+            mpu::Packet::Mag(field) => {
+                assert_eq!((packet.due, packet.carries), (mag[mags].0, 0b100));
+                // The AK8963 inside sees y, x and −z of the MPU.
+                let [x, y, z] = field.field;
+                counts_match([y, x, -z], &mag[mags].1, 0.15);
+                assert_eq!((field.st1, field.st2), (registers::ST1_DATA_READY, registers::ST2_16_BIT));
+                mags += 1;
+            }
+            mpu::Packet::Config(config) => {
+                configs.push(packet.due.0 / NANOS);
+                assert_eq!(packet.carries, 0);
+                let expected = config::Repr {
+                    who_am_i: registers::WHO_MPU9250,
+                    smplrt_div: 4,
+                    config: 1,
+                    gyro_config: 0x18,
+                    accel_config: 0x18,
+                    mag_who: registers::WHO_AK8963,
+                    cntl1: 0x16,
+                    asa: [128; 3],
+                };
+                assert_eq!(config, expected);
+            }
+            other => panic!("{other:?} has no place here"),
+        }
+    }
+    assert_eq!((imus, mags, configs), (500, 125, vec![0, 1, 2]));
+    let first = driven(&packets)[0].1;
+    assert!(matches!(first, mpu::Packet::Config(_)), "the scales come before what they scale");
+}
+
+#[test]
+fn mpu_sends_gyro_and_accel_apart_when_their_rates_differ_or_it_is_asked_to() {
+    let scenes = [(NOISY.replacen("200 Hz", "250 Hz", 1), None), (NOISY.to_string(), Some(Layout::Separate))];
+    for (scene, layout) in scenes {
+        let (packets, readings) = play(&plan(&scene), Protocol::Mpu, layout);
+        let (gyro, accel) = (of(&readings, SensorKind::Gyro), of(&readings, SensorKind::Accel));
+        let (mut gyros, mut accels) = (0, 0);
+        for (packet, seen) in driven(&packets) {
+            match seen {
+                mpu::Packet::Gyro(seen) => {
+                    assert_eq!((packet.due, packet.carries), (gyro[gyros].0, 0b001));
+                    counts_match(seen.gyro, &gyro[gyros].1, GYRO_COUNT);
+                    gyros += 1;
+                }
+                mpu::Packet::Accel(seen) => {
+                    assert_eq!((packet.due, packet.carries), (accel[accels].0, 0b010));
+                    counts_match(seen.accel, &accel[accels].1, ACCEL_COUNT);
+                    accels += 1;
+                }
+                mpu::Packet::Mag(_) | mpu::Packet::Config(_) => {}
+                other => panic!("{other:?} has no place here"),
+            }
+        }
+        assert_eq!((gyros, accels), (gyro.len(), accel.len()));
+    }
+}
+
+#[test]
+fn a_burst_goes_out_at_the_faster_rate_and_holds_the_slower_sensor() {
+    for (scene, faster) in [
+        (NOISY.replacen("200 Hz", "1 kHz", 1), SensorKind::Gyro),
+        (NOISY.replace("200 Hz\"\nnoise_std = \"1 m", "800 Hz\"\nnoise_std = \"1 m"), SensorKind::Accel),
+    ] {
+        let (packets, readings) = play(&plan(&scene), Protocol::Mpu, Some(Layout::Burst));
+        let newest = |kind, t| {
+            of(&readings, kind)
+                .iter()
+                .rfind(|(due, _)| *due <= t)
+                .map(|(due, reading)| (*due, *reading))
+                .unwrap()
+        };
+        let mut imus = 0;
+        for (packet, seen) in driven(&packets) {
+            let mpu::Packet::Imu(imu) = seen else { continue };
+            let (gyro, accel) = (newest(SensorKind::Gyro, packet.due), newest(SensorKind::Accel, packet.due));
+            counts_match(imu.gyro, &gyro.1, GYRO_COUNT);
+            counts_match(imu.accel, &accel.1, ACCEL_COUNT);
+            let fresh = u8::from(gyro.0 == packet.due) | u8::from(accel.0 == packet.due) << 1;
+            assert_eq!(packet.carries, fresh, "a held sample is not carried a second time");
+            imus += 1;
+        }
+        assert_eq!(imus, of(&readings, faster).len());
+    }
+}
+
+#[test]
+fn mpu_counts_saturate_and_the_magnetometer_says_that_it_overflowed() {
+    let scene = r#"
+        axes = "enu-flu"
+        [earth]
+        field = "[0, 4000, -950] uT"
+        [[motion]]
+        kind = "rotate"
+        angular_rate = "[2100, -2100, 100] deg/s"
+        duration = "1 ms"
+        [[force]]
+        duration = "1 s"
+        acceleration = "[0, 170, -190] m/s^2"
+        [gyro]
+        rate = "1 kHz"
+        [accel]
+        rate = "1 kHz"
+        [mag]
+        rate = "100 Hz"
+    "#;
+    let (packets, _) = play(&plan(scene), Protocol::Mpu, None);
+    let seen = driven(&packets);
+    let mpu::Packet::Imu(imu) = seen[1].1 else { panic!() };
+    assert_eq!(imu.gyro, [32767, -32768, 1640]);
+    assert_eq!((imu.accel[0], imu.accel[1]), (0, 32767));
+    assert_eq!(imu.accel[2], -32768, "9.8 − 190 is beyond −16 g");
+    let mpu::Packet::Mag(mag) = seen[2].1 else { panic!() };
+    assert_eq!(mag.st2 & registers::ST2_OVERFLOW, registers::ST2_OVERFLOW, "4000 + 950 is above 4912");
+    let (packets, _) = play(&plan(&scene.replace("950", "850")), Protocol::Mpu, None);
+    let mpu::Packet::Mag(mag) = driven(&packets)[2].1 else { panic!() };
+    assert_eq!(mag.st2 & registers::ST2_OVERFLOW, 0, "4000 + 850 is not");
+}
+
+#[test]
+fn mpu_scales_and_chip_follow_the_scene() {
+    let configured = |gyro: &str, accel: &str| {
+        let scene = format!(
+            "duration = \"1 ms\"\n[gyro]\nrate = \"1 kHz\"\n{gyro}\n[accel]\nrate = \"1 kHz\"\n{accel}\n"
+        );
+        let (packets, _) = play(&plan(&scene), Protocol::Mpu, None);
+        let (mpu::Packet::Config(config), mpu::Packet::Imu(imu)) =
+            (driven(&packets)[0].1, driven(&packets)[1].1)
+        else {
+            panic!()
+        };
+        (config, imu)
+    };
+    for (gyro, bits) in [
+        ("", 3),
+        ("range = \"250 deg/s\"", 0),
+        ("range = \"500 deg/s\"", 1),
+        ("range = \"1000 deg/s\"", 2),
+        ("range = \"2000 deg/s\"", 3),
+        ("range = \"300 deg/s\"", 1),
+        ("range = \"9000 deg/s\"", 3),
+        ("part = \"MPU-9250\"\nrange = \"500 deg/s\"", 1),
+        ("resolution = \"131 LSB/(deg/s)\"", 0),
+    ] {
+        assert_eq!(configured(gyro, "").0.gyro_config, bits << 3, "{gyro}");
+    }
+    for (accel, bits) in
+        [("range = \"2 g\"", 0), ("range = \"4 g\"", 1), ("part = \"MPU-6050\"", 3), ("range = \"3 g\"", 1)]
+    {
+        assert_eq!(configured("", accel).0.accel_config, bits << 3, "{accel}");
+    }
+    let (config, imu) = configured("part = \"MPU-6000\"", "part = \"MPU-6050\"");
+    assert_eq!((config.who_am_i, config.mag_who, config.cntl1), (registers::WHO_MPU60X0, 0, 0));
+    assert_eq!(imu.temperature, -3920, "(25 °C − 36.53 °C)·340");
+    let two_g = configured("", "range = \"2 g\"\nmount = \"frd\"").1;
+    assert_eq!(two_g.accel, [0, 0, -16384], "−1 g on a z that points down");
+    assert_eq!(
+        configured("", "range = \"2 g\"").1.accel,
+        [0, 0, 16384],
+        "+1 g on one that points up, by default"
+    );
+}
+
+/// The messages of `mavlink` packets, each with what it was sent as.
+fn flown(packets: &[Packet]) -> Vec<(&Packet, Message)> {
+    let mut decoder = mavlink::Decoder::new();
+    let mut all = Vec::new();
+    for (i, packet) in packets.iter().enumerate() {
+        let mut found = Vec::new();
+        decoder.feed(packet.bytes(), |received| found.push(received.unwrap()));
+        let [received] = found[..] else { panic!("one message a packet: {found:?}") };
+        assert_eq!(received.header.seq, i as u8);
+        all.push((packet, received.message.unwrap()));
+    }
+    all
+}
+
+#[test]
+fn mavlink_carries_the_newest_of_each_sensor_with_a_bit_for_each_that_ticked() {
+    let scene = NOISY.replacen("200 Hz", "100 Hz", 1).replace("50 Hz", "400/3 Hz");
+    let (packets, readings) = play(&plan(&scene), Protocol::Mavlink, None);
+    let newest = |kind, t| {
+        of(&readings, kind).iter().rfind(|(due, _)| *due <= t).map(|(_, reading)| *reading).unwrap()
+    };
+    let (mut last, mut count, mut replaced) = (SimTime(-1), 0, [0; 3]);
+    for (packet, message) in flown(&packets) {
+        let Message::HilSensor(seen) = message else { continue };
+        assert_eq!(seen.time_usec as i64, packet.due.0 / 1000);
+        let mut mask = 0;
+        for (kind, bits, values, unit) in [
+            (SensorKind::Gyro, hil_sensor::GYRO, seen.gyro, 1.0),
+            (SensorKind::Accel, hil_sensor::ACCEL, seen.accel, 1.0),
+            (SensorKind::Mag, hil_sensor::MAG, seen.mag, 100.0),
+        ] {
+            let ticks = readings
+                .iter()
+                .filter(|(t, reading)| reading.kind == kind && *t > last && *t <= packet.due)
+                .count();
+            mask |= if ticks > 0 { bits } else { 0 };
+            assert_eq!(packet.carries >> kind as u8 & 1 == 1, ticks > 0);
+            assert_eq!(packet.replaced[kind as usize] as usize, ticks.saturating_sub(1));
+            replaced[kind as usize] += packet.replaced[kind as usize];
+            let expected = newest(kind, packet.due).value.v.to_array().map(|x| (x / unit) as f32);
+            assert_eq!(values, expected, "{kind} in Forward-Right-Down, the field in gauss");
+        }
+        assert_eq!(seen.fields_updated, mask);
+        (last, count) = (packet.due, count + 1);
+    }
+    assert_eq!(count, 250, "one at each tick of the gyro");
+    assert!(
+        replaced[1] > 200 && replaced[2] > 50 && replaced[0] == 0,
+        "accel and mag are faster: {replaced:?}"
+    );
+    let warnings = warnings(Protocol::Mavlink, &plan(&scene).sensors);
+    assert!(warnings.len() == 2 && warnings[0].contains("accel (200 Hz)"), "{warnings:?}");
+}
+
+#[test]
+fn mavlink_sends_its_heartbeat_and_the_scenes_clock_once_a_second() {
+    for (earth, start) in [("", None), ("[earth]\ndate = \"2026-11-22\"\n", Some(1_795_305_600_000_000))] {
+        let scene = format!("duration = \"3.5 s\"\n{earth}[gyro]\nrate = \"10 Hz\"\n");
+        let (packets, _) = play(&plan(&scene), Protocol::Mavlink, None);
+        let (mut beats, mut clocks) = (Vec::new(), Vec::new());
+        for (packet, message) in flown(&packets) {
+            match message {
+                Message::Heartbeat(_) => beats.push(packet.due.0 / NANOS),
+                Message::SystemTime(clock) => {
+                    let us = packet.due.0 as u64 / 1000;
+                    assert_eq!(clock.time_unix_usec, start.map_or(0, |start| start + us));
+                    assert_eq!(u64::from(clock.time_boot_ms), us / 1000);
+                    clocks.push(packet.due.0 / NANOS);
+                }
+                _ => {}
+            }
+        }
+        assert_eq!((beats, clocks), (vec![0, 1, 2, 3], vec![0, 1, 2, 3]));
+    }
+}
+
+#[test]
+fn mavlink_without_a_gyro_goes_by_the_sensor_it_has() {
+    let (packets, _) = play(&plan("duration = \"1 s\"\n[mag]\nrate = \"10 Hz\"\n"), Protocol::Mavlink, None);
+    let hil = flown(&packets).into_iter().filter_map(|(_, message)| match message {
+        Message::HilSensor(hil) => Some(hil.fields_updated),
+        _ => None,
+    });
+    assert_eq!(hil.collect::<Vec<_>>(), [hil_sensor::MAG; 10]);
+}
+
+#[test]
+fn a_slow_scene_still_has_every_second() {
+    let (packets, _) = play(&plan("duration = \"7 s\"\n[mag]\nrate = \"0.2 Hz\"\n"), Protocol::Mpu, None);
+    let configs = driven(&packets).into_iter().filter(|(_, seen)| matches!(seen, mpu::Packet::Config(_)));
+    assert_eq!(configs.map(|(packet, _)| packet.due.0 / NANOS).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
+}
+
+#[test]
+fn text_reads_back_to_the_same_bits_in_the_scenes_axes() {
+    for axes in [Axes::NedFrd, Axes::EnuFlu] {
+        let plan = plan(&format!("axes = \"{axes}\"\n{NOISY}"));
+        let (csv, readings) = play(&plan, Protocol::Csv, None);
+        let (jsonl, _) = play(&plan, Protocol::Jsonl, None);
+        assert_eq!(csv[0].bytes(), b"t_ns,sensor,x,y,z\n");
+        assert_eq!((csv.len() - 1, jsonl.len()), (readings.len(), readings.len()));
+        for (((t, reading), csv), json) in readings.iter().zip(&csv[1..]).zip(&jsonl) {
+            let bits = axes.body_out(reading.value).to_array().map(f64::to_bits);
+            let line = std::str::from_utf8(csv.bytes()).unwrap().strip_suffix('\n').unwrap();
+            let cells: Vec<_> = line.split(',').collect();
+            assert_eq!((cells[0], cells[1]), (t.0.to_string().as_str(), reading.kind.name()));
+            assert_eq!([2, 3, 4].map(|i| cells[i].parse::<f64>().unwrap().to_bits()), bits);
+            let object: serde_json::Value = serde_json::from_slice(json.bytes()).unwrap();
+            assert_eq!(
+                (object["t_ns"].as_i64(), object["sensor"].as_str()),
+                (Some(t.0), Some(reading.kind.name()))
+            );
+            // The numbers as written: serde_json itself may read the last bit of one wrongly.
+            let text = std::str::from_utf8(json.bytes()).unwrap();
+            let number = |key: &str| {
+                text.split_once(key).unwrap().1.split([',', '}']).next().unwrap().parse::<f64>().unwrap()
+            };
+            assert!(["x", "y", "z"].iter().all(|key| object[*key].is_number()));
+            assert_eq!(["\"x\":", "\"y\":", "\"z\":"].map(|key| number(key).to_bits()), bits);
+            assert_eq!(
+                (csv.due, csv.carries, json.carries),
+                (*t, 1 << reading.kind as u8, 1 << reading.kind as u8)
+            );
+        }
+    }
+}
+
+#[test]
+fn the_load_is_what_is_sent() {
+    let plan = plan(&NOISY.replace("2.5 s", "10 s"));
+    for protocol in Protocol::ALL {
+        let (packets, _) = play(&plan, protocol, None);
+        let bytes = packets.iter().map(|packet| packet.bytes().len()).sum::<usize>() as f64;
+        let (bytes_per_s, packets_per_s) = load(protocol, &setup(&plan, None));
+        assert_eq!(packets_per_s, packets.len() as f64 / 10.0, "{protocol:?}");
+        // Numbers in text differ in length; none of the others do.
+        let slack = if matches!(protocol, Protocol::Csv | Protocol::Jsonl) { 0.2 } else { 0.0 };
+        let ratio = bytes_per_s / (bytes / 10.0);
+        assert!((1.0..=1.0 + slack).contains(&ratio), "{protocol:?}: {ratio}");
+    }
+}
+
+#[test]
+fn protocols_have_names_and_a_burst_needs_both_sensors() {
+    for protocol in Protocol::ALL {
+        assert_eq!(Protocol::from_name(protocol.name()), Some(protocol));
+        assert!(!protocol.about().is_empty());
+    }
+    let gyro = plan("duration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\n");
+    let burst = Options { layout: Some(Layout::Burst) };
+    assert!(check(Protocol::Mpu, &burst, &gyro.sensors).unwrap_err().contains("[accel]"));
+    assert!(check(Protocol::Mpu, &burst, &plan(NOISY).sensors).is_ok());
+    assert!(check(Protocol::Mpu, &Options::default(), &gyro.sensors).is_ok());
+}
+
+/// A sensor's ticks, of any of three kinds.
+fn any_ticks() -> impl Strategy<Value = Option<(u64, u64, i64)>> {
+    prop_oneof![1 => Just(None), 3 => (1..400u64, 1..7u64, 0..300_000_000i64).prop_map(Some)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_sample_is_carried_once_or_counted_as_replaced(
+        ticks in [any_ticks(), any_ticks(), any_ticks()],
+        protocol in prop::sample::select(Protocol::ALL.to_vec()),
+        layout in prop::sample::select(vec![None, Some(Layout::Separate), Some(Layout::Burst)]),
+    ) {
+        let sensor = |(kind, ticks): (SensorKind, Option<(u64, u64, i64)>)| ticks.map(|(top, bottom, phase)| SensorPlan {
+            kind,
+            rate: Rate::new(top, bottom).unwrap(),
+            phase: SimTime(phase),
+            sampling: Default::default(),
+            mount: None,
+            part: None,
+            values: Default::default(),
+        });
+        let sensors: Vec<_> = SensorKind::ALL.into_iter().zip(ticks).filter_map(sensor).collect();
+        let options = Options { layout };
+        prop_assume!(check(protocol, &options, &sensors).is_ok());
+        let setup = Setup { sensors: &sensors, axes: Axes::NedFrd, day: None, options };
+        let mut encoder = encoder(protocol, &setup);
+        let (mut packets, mut made) = (Vec::new(), [0u64; 3]);
+        let end = SimTime(3 * NANOS);
+        let due = Schedule::new(sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase }), end);
+        // A last moment at which all tick: whatever was waiting for a packet has one.
+        let all = crate::schedule::Due { t: end, sensors: u32::MAX };
+        for due in due.chain([all]) {
+            let ticked = sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
+            let readings: Vec<_> = ticked.map(|(i, sensor)| Reading { value: Vector::new(1.0, 2.0, 3.0), ..Reading::zero(i, sensor.kind) }).collect();
+            readings.iter().for_each(|reading| made[reading.kind as usize] += 1);
+            encoder.encode(due.t, &readings, &mut packets);
+        }
+        for kind in 0..3 {
+            let carried = packets.iter().filter(|packet| packet.carries >> kind & 1 == 1).count() as u64;
+            let replaced: u64 = packets.iter().map(|packet| u64::from(packet.replaced[kind])).sum();
+            prop_assert_eq!(made[kind], carried + replaced, "kind {} of {:?}", kind, protocol);
+        }
+        prop_assert!(packets.windows(2).all(|pair| pair[0].due <= pair[1].due));
+        prop_assert!(packets.iter().all(|packet| !packet.bytes().is_empty() && packet.bytes().len() < MAX_PACKET));
+    }
+}

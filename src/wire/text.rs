@@ -17,7 +17,12 @@ pub(super) struct Text {
 impl Text {
     /// `t_ns,sensor,x,y,z`, named in a first line.
     pub(super) fn csv(setup: &Setup<'_>) -> Text {
-        Text { axes: setup.axes, json: false, header: Some("t_ns,sensor,x,y,z\n"), line: Vec::with_capacity(256) }
+        Text {
+            axes: setup.axes,
+            json: false,
+            header: Some("t_ns,sensor,x,y,z\n"),
+            line: Vec::with_capacity(256),
+        }
     }
 
     /// One JSON object a line.

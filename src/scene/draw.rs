@@ -1,0 +1,119 @@
+//! Values drawn once a run: `noise_std = { uniform = ["0.001 rad/s", "0.003 rad/s"] }`.
+
+use super::document::{Node, Table, Value};
+use super::section::Section;
+use crate::keys::{self, Key, Takes};
+use crate::quantity::{self, Kind, Sign};
+use crate::random::{self, Stream};
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+
+/// A value that was drawn once for this run.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Drawn {
+    /// Such as `gyro.noise_std`.
+    pub key: String,
+    /// What was drawn, as a scene would write it.
+    pub value: String,
+}
+
+impl Section<'_> {
+    /// A value drawn once a run: `{ uniform = [low, high] }` or `{ normal = [mean, std] }`, each axis by itself.
+    pub(super) fn draw(&self, key: &Key, table: &Table) -> Option<keys::Value> {
+        let (kind, scalar, magnitude) = match key.takes {
+            Takes::Scalar(kind) => (kind, true, true),
+            Takes::PerAxis(kind) => (kind, false, true),
+            Takes::BodyVector(kind) => (kind, false, false),
+            _ => {
+                self.mistake(key.name, "cannot be drawn from a distribution");
+                return None;
+            }
+        };
+        let Some((shape, low, high)) = self.distribution(key.name, kind, table) else { return None };
+        let axes: &[usize] = if scalar { &[0] } else { &[0, 1, 2] };
+        let mut drawn = [0.0; 3];
+        for &axis in axes {
+            let name = format!("draw/{}/{}/{}", self.path, key.name, ["x", "y", "z"][axis]);
+            let mut stream = random::stream(self.reader.seed.get(), &name);
+            let value = shape.sample(low[axis], high[axis], &mut stream);
+            // The size of a noise has no sign; the tail of a normal distribution is folded over.
+            drawn[axis] = if magnitude { value.abs() } else { value };
+        }
+        let unit = kind.units()[0];
+        let text =
+            if scalar { quantity::text_scalar(drawn[0], unit) } else { quantity::text_vector(drawn, unit) };
+        self.reader
+            .draws
+            .borrow_mut()
+            .push(Drawn { key: format!("{}.{}", self.path, key.name), value: text.clone() });
+        self.resolve(key.name, text);
+        let sign = if magnitude { 1.0 } else { self.reader.axes.get().body_sign() };
+        Some(match key.takes {
+            Takes::Scalar(_) => keys::Value::Scalar(drawn[0].into()),
+            _ => keys::Value::Triple([drawn[0], drawn[1] * sign, drawn[2] * sign].map(Into::into)),
+        })
+    }
+
+    fn distribution(
+        &self,
+        key: &'static str,
+        kind: Kind,
+        table: &Table,
+    ) -> Option<(Shape, [f64; 3], [f64; 3])> {
+        let (shape, entry) = match &table.entries[..] {
+            [entry] if entry.key == "uniform" => (Shape::Uniform, entry),
+            [entry] if entry.key == "normal" => (Shape::Normal, entry),
+            _ => {
+                self.mistake(key, format!("a drawn value is {{ uniform = [low, high] }} or {{ normal = [mean, std] }}, such as {{ uniform = [\"1 {0}\", \"2 {0}\"] }}", kind.units()[0]));
+                return None;
+            }
+        };
+        let Value::Array(nodes) = &entry.node.value else {
+            self.note(&entry.node.place, format!("`{key}`: `{}` takes an array of two strings", entry.key));
+            return None;
+        };
+        let [low, high] = &nodes[..] else {
+            self.note(
+                &entry.node.place,
+                format!("`{key}`: `{}` takes two values, not {}", entry.key, nodes.len()),
+            );
+            return None;
+        };
+        let end = |node: &Node, kind: Kind| {
+            let text = self.spelled(key, node, kind.example())?;
+            match kind.vector(&text) {
+                Ok(value) => Some(value.map(|x| x.to_f64())),
+                Err(error) => {
+                    self.note(&node.place_in_text(error.offset()), format!("`{key}`: {error}"));
+                    None
+                }
+            }
+        };
+        let second = if shape == Shape::Normal { kind.signed(Sign::NonNegative) } else { kind };
+        let (first, second) = (end(low, kind), end(high, second));
+        let (first, second) = (first?, second?);
+        if shape == Shape::Uniform && (0..3).any(|axis| first[axis] > second[axis]) {
+            self.note(&entry.node.place, format!("`{key}`: `uniform` takes its lower end first"));
+            return None;
+        }
+        Some((shape, first, second))
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Shape {
+    Uniform,
+    Normal,
+}
+
+impl Shape {
+    fn sample(self, a: f64, b: f64, stream: &mut Stream) -> f64 {
+        match self {
+            Shape::Uniform => a + (b - a) * stream.random::<f64>(),
+            Shape::Normal => {
+                let n: f64 = StandardNormal.sample(stream);
+                a + b * n
+            }
+        }
+    }
+}
