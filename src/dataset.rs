@@ -72,7 +72,7 @@ pub struct Summary {
     pub clipped: Vec<u64>,
 }
 
-/// Whether [`write`] would accept the folder, asked before a run that takes its time. Nothing is changed.
+/// Whether [`write()`] would accept the folder, asked before a run that takes its time. Nothing is changed.
 ///
 /// # Errors
 /// It holds something and `force` is off, or it is no folder.
