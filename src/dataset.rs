@@ -24,7 +24,8 @@ mod table;
 
 pub use error::DatasetError;
 pub use figures::{Figure, Series, figures};
-pub use format::{FORMATS, Format, Writer};
+pub use folder::{Folder, Sink};
+pub use format::{FORMATS, Format, Open, Writer};
 pub use manifest::FileEntry;
 pub use table::{Column, Table};
 
@@ -32,7 +33,6 @@ use crate::geometry::Attitude;
 use crate::player::{self, Player};
 use crate::scene::Plan;
 use crate::time::SimTime;
-use folder::Folder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -72,7 +72,7 @@ pub struct Summary {
     pub clipped: Vec<u64>,
 }
 
-/// Whether [`write`] would accept the folder, asked before a run that takes its time. Nothing is changed.
+/// Whether [`write()`] would accept the folder, asked before a run that takes its time. Nothing is changed.
 ///
 /// # Errors
 /// It holds something and `force` is off, or it is no folder.

@@ -58,14 +58,15 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #[test]
-        fn any_number_reads_back_to_the_same_bits(value in any::<f64>().prop_filter("-0 is 0", |x| *x != 0.0)) {
-            let mut digits = ryu::Buffer::new();
-            let text = shortest(value, &mut digits);
-            prop_assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits());
-            prop_assert!(text.len() <= format!("{value:?}").len(), "{} is not the shortest", text);
+            #[test]
+            fn any_number_reads_back_to_the_same_bits(value in any::<f64>().prop_filter("-0 is 0", |x| *x != 0.0)) {
+                let mut digits = ryu::Buffer::new();
+                let text = shortest(value, &mut digits);
+                prop_assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits());
+    let digits = |text: &str| text.split('e').next().unwrap_or_default().replace(['-', '.'], "").trim_matches('0').len();
+                prop_assert_eq!(digits(text), digits(&format!("{value:e}")), "{}", text);
+            }
         }
-    }
 
     #[test]
     fn whole_numbers_have_no_point_and_no_zero_has_a_sign() {

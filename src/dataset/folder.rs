@@ -17,7 +17,7 @@ const BUFFER: usize = 1 << 18;
 /// Marks a folder that is still being filled, or was when its process was killed.
 const INCOMPLETE: &str = ".incomplete-";
 
-/// A dataset's folder while it is being written; dropped before [`Folder::commit`], it leaves nothing behind.
+/// A dataset's folder while it is being written; dropped before it is complete, it leaves nothing behind.
 pub struct Folder {
     target: PathBuf,
     workshop: PathBuf,

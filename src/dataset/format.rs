@@ -14,8 +14,11 @@ pub struct Format {
     /// One line for the docs.
     pub about: &'static str,
     /// Creates the files that will hold these tables.
-    pub open: fn(&[Table], &Folder) -> Result<Box<dyn Writer>, DatasetError>,
+    pub open: Open,
 }
+
+/// Begins a dataset of these tables in a folder.
+pub type Open = fn(&[Table], &Folder) -> Result<Box<dyn Writer>, DatasetError>;
 
 /// Every format.
 pub static FORMATS: [&Format; 1] = [&csv::FORMAT];

@@ -176,7 +176,7 @@ q = np.column_stack([truth[c] for c in (\"qw\", \"qx\", \"qy\", \"qz\")])
 ",
     );
     for kind in plan.sensors.iter().map(|sensor| sensor.kind) {
-        let _ = writeln!(text, "{kind} = load(\"{kind}\")            # {kind}[\"t_ns\"], xyz({kind})");
+        let _ = writeln!(text, "{kind} = load(\"{kind}\")    # times {kind}[\"t_ns\"], readings xyz({kind})");
     }
     text.push_str("```\n");
     text.push_str(&ahrs(plan));
@@ -190,20 +190,27 @@ fn ahrs(plan: &Plan) -> String {
     else {
         return String::new();
     };
-    let (rate, frame) = (gyro.rate.as_hz(), if plan.axes == Axes::NedFrd { "NED" } else { "ENU" });
+    let rate = gyro.rate.as_hz();
+    // Which filter of the package takes and gives which axes is not in its manual; these two were tried.
+    let (filter, sign, note) = match plan.axes {
+        Axes::EnuFlu => ("Mahony", "", ""),
+        Axes::NedFrd => {
+            ("Madgwick", "-", " Like MATLAB it wants the\naccelerometer's other sign in North-East-Down.")
+        }
+    };
     format!(
         "
-The Python package `ahrs`, continuing; accelerometer and magnetometer hold their latest sample at the gyroscope's
-times:
+The Python package `ahrs` (0.4), continuing. Accelerometer and magnetometer hold their latest sample at the
+gyroscope's times; the estimate is in this dataset's axes, its heading relative to magnetic north.{note}
 
 ```python
-from ahrs.filters import EKF
+from ahrs.filters import {filter}
 
 def held(table):
     index = np.searchsorted(table[\"t_ns\"], gyro[\"t_ns\"], side=\"right\") - 1
     return xyz(table)[np.maximum(index, 0)]
 
-estimate = EKF(gyr=xyz(gyro), acc=held(accel), mag=held(mag), frequency={rate}, frame=\"{frame}\").Q
+estimate = {filter}(gyr=xyz(gyro), acc={sign}held(accel), mag=held(mag), frequency={rate:?}).Q
 ```
 "
     )
@@ -219,14 +226,13 @@ accNED = -(acc .* [1 -1 -1]);         % the same turn, then the whole accelerome
         }
     };
     format!(
-        "
-MATLAB (a sensor that the scene lacks has no file):
+        "MATLAB (a sensor that the scene lacks has no file):
 
 ```matlab
 gyro = readtable('gyro.csv');  gyr = gyro{{:, 2:4}};  t = gyro.t_ns * 1e-9;
 accel = readtable('accel.csv'); acc = accel{{:, 2:4}};
 magnetometer = readtable('mag.csv'); mag = magnetometer{{:, 2:4}};
-truth = readtable('truth.csv'); q = quaternion(truth{{:, 2:5}});
+truth = readtable('truth.csv'); q = quaternion(truth{{:, 2:5}});   % rotatepoint(q, v) takes body vectors to nav
 ```
 
 MATLAB's `imuSensor` in NED, and the filters made for it, report gravity minus acceleration: +9.81 at rest, the
