@@ -48,12 +48,12 @@ fn noise(sensor: &SensorPlan) -> Option<Noise> {
     })
 }
 
-/// What a reading is shown in: degrees are easier to judge than radians.
-fn shown(kind: SensorKind) -> (&'static str, f64) {
+/// What a reading and its random walk are shown in: degrees are easier to judge than radians.
+fn shown(kind: SensorKind) -> (&'static str, &'static str, f64) {
     match kind {
-        SensorKind::Gyro => ("deg/s", 1f64.to_degrees()),
-        SensorKind::Accel => ("m/s²", 1.0),
-        SensorKind::Mag => ("µT", 1.0),
+        SensorKind::Gyro => ("deg/s", "deg/√s", 1f64.to_degrees()),
+        SensorKind::Accel => ("m/s²", "m/s/√s", 1.0),
+        SensorKind::Mag => ("µT", "µT·√s", 1.0),
     }
 }
 
@@ -101,18 +101,20 @@ fn text(plan: &Plan) -> String {
         number(crate::earth::declination(plan.trajectory.field()).to_degrees()),
     );
     let rows = plan.sensors.iter().map(|sensor| {
-        let (unit, scale) = shown(sensor.kind);
-        let amount = |value: f64, suffix: &str| format!("{} {unit}{suffix}", number(value * scale));
+        let (unit, walk_unit, scale) = shown(sensor.kind);
+        let amount = |value: f64, unit: &str| format!("{} {unit}", number(value * scale));
         let noise = noise(sensor);
-        let say = |pick: fn(&Noise) -> f64, suffix: &str| noise.as_ref().map_or("-".into(), |noise| amount(pick(noise), suffix));
+        let say = |pick: fn(&Noise) -> f64, unit: &str| {
+            noise.as_ref().map_or("-".into(), |noise| amount(pick(noise), unit))
+        };
         vec![
             sensor.kind.to_string(),
             sensor.rate.to_string(),
             sensor.part.unwrap_or("-").to_string(),
-            say(|noise| noise.per_sample, ""),
-            say(|noise| noise.density, "/√Hz"),
-            say(|noise| noise.random_walk, "·√s"),
-            lsb(&sensor.values, sensor.kind).map_or("-".into(), |lsb| amount(lsb, "")),
+            say(|noise| noise.per_sample, unit),
+            say(|noise| noise.density, &format!("{unit}/√Hz")),
+            say(|noise| noise.random_walk, walk_unit),
+            lsb(&sensor.values, sensor.kind).map_or("-".into(), |lsb| amount(lsb, unit)),
             terms(plan, sensor).join(" "),
         ]
     });

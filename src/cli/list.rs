@@ -71,7 +71,7 @@ fn parts() -> Result<String, Refusal> {
     let mut text = String::new();
     for part in parts::all() {
         text += &format!("{}: {}\n", part.names.join(", "), part.about);
-        for value in scene::parts::sources(part).map_err(Refusal)? {
+        for value in scene::parts::sources(part).map_err(|mistake| Refusal(mistake.to_string()))? {
             text += &format!("  {} {} = {}\n      {}\n", value.sensor, value.key, value.value, value.source);
         }
     }
