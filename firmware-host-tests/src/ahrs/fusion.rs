@@ -22,10 +22,7 @@ pub struct Fusion {
 impl Fusion {
     /// A filter in NED; `declination_rad` turns magnetic to true north.
     pub fn new(declination_rad: f64) -> Self {
-        let settings = AhrsSettings {
-            convention: Convention::Ned,
-            ..AhrsSettings::default()
-        };
+        let settings = AhrsSettings { convention: Convention::Ned, ..AhrsSettings::default() };
         Self {
             filter: fusion_ahrs::Ahrs::with_settings(settings),
             declination_rad,
@@ -54,9 +51,7 @@ impl Ahrs for Fusion {
         }
         self.filter.set_sample_period(dt_s as f32);
         let rate = rate.map(|w| w.to_degrees() as f32);
-        let accel = self
-            .accel
-            .map_or([0.0; 3], |force| force.map(|f| (f / G) as f32));
+        let accel = self.accel.map_or([0.0; 3], |force| force.map(|f| (f / G) as f32));
         match self.mag {
             Some(field) => self.filter.update(rate, accel, field.map(|m| m as f32)),
             None => self.filter.update_no_magnetometer(rate, accel),

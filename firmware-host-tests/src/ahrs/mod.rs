@@ -46,11 +46,7 @@ pub struct Periods {
 impl Default for Periods {
     /// 100 Hz each.
     fn default() -> Self {
-        Self {
-            gyro_s: 0.01,
-            accel_s: 0.01,
-            mag_s: 0.01,
-        }
+        Self { gyro_s: 0.01, accel_s: 0.01, mag_s: 0.01 }
     }
 }
 
