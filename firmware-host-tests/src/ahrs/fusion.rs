@@ -2,7 +2,7 @@
 
 use fusion_ahrs::{AhrsSettings, Convention, Quaternion};
 
-use super::{Ahrs, to_true_north};
+use super::{Ahrs, Periods, to_true_north};
 use crate::quaternion::from_accel_mag;
 
 /// Standard gravity, m/s²: one g.
@@ -20,9 +20,14 @@ pub struct Fusion {
 }
 
 impl Fusion {
-    /// A filter in NED; `declination_rad` turns magnetic to true north.
-    pub fn new(declination_rad: f64) -> Self {
-        let settings = AhrsSettings { convention: Convention::Ned, ..AhrsSettings::default() };
+    /// A filter in NED for a gyro of this period; `declination_rad` turns magnetic to true north.
+    pub fn new(periods: Periods, declination_rad: f64) -> Self {
+        let settings = AhrsSettings {
+            convention: Convention::Ned,
+            // It counts its startup of 3 s in samples.
+            sample_rate: (1.0 / periods.gyro_s) as f32,
+            ..AhrsSettings::default()
+        };
         Self {
             filter: fusion_ahrs::Ahrs::with_settings(settings),
             declination_rad,

@@ -66,7 +66,7 @@ impl Kind {
     pub fn build(self, periods: Periods, declination_rad: f64) -> Box<dyn Ahrs + Send> {
         match self {
             Self::Vqf => Box::new(Vqf::new(periods, declination_rad)),
-            Self::Fusion => Box::new(Fusion::new(declination_rad)),
+            Self::Fusion => Box::new(Fusion::new(periods, declination_rad)),
         }
     }
 }
