@@ -22,14 +22,7 @@ fn bound_deg(kind: Kind) -> f64 {
 /// The largest angle between estimate and truth after settling, deg.
 fn worst_deg(kind: Kind, body: Body, every_us: [u64; 3], spoil: impl Fn(Sample) -> Sample) -> f64 {
     let [gyro_s, accel_s, mag_s] = every_us.map(|us| us as f64 * 1e-6);
-    let mut ahrs = kind.build(
-        Periods {
-            gyro_s,
-            accel_s,
-            mag_s,
-        },
-        DECLINATION_RAD,
-    );
+    let mut ahrs = kind.build(Periods { gyro_s, accel_s, mag_s }, DECLINATION_RAD);
     let mut last_us = 0;
     let mut worst = 0_f64;
     for sample in body.samples(SECONDS, every_us).into_iter().map(spoil) {
@@ -53,10 +46,7 @@ fn the_attitude_follows_truth_at_equal_and_at_different_rates() {
         for every_us in [[10_000; 3], [1_000, 2_000, 10_000], [2_000, 5_000, 20_000]] {
             for body in [LEVEL, TILTED, TURNING, SLOW_TURN] {
                 let worst = worst_deg(kind, body, every_us, |sample| sample);
-                assert!(
-                    worst < bound_deg(kind),
-                    "{kind} {body:?} {every_us:?}: {worst} deg"
-                );
+                assert!(worst < bound_deg(kind), "{kind} {body:?} {every_us:?}: {worst} deg");
             }
         }
     }
@@ -66,34 +56,13 @@ type Spoil = fn(Sample) -> Sample;
 
 #[test]
 fn wrong_axes_signs_scales_and_declination_do_not_pass() {
-    let swapped_gyro: Spoil = |s| Sample {
-        gyro: s.gyro.map(|[x, y, z]| [x, z, y]),
-        ..s
-    };
-    let flipped_gyro: Spoil = |s| Sample {
-        gyro: s.gyro.map(|[x, y, z]| [x, y, -z]),
-        ..s
-    };
-    let degrees_gyro: Spoil = |s| Sample {
-        gyro: s.gyro.map(|w| w.map(|c| c * 1.2)),
-        ..s
-    };
-    let swapped_accel: Spoil = |s| Sample {
-        accel: s.accel.map(|[x, y, z]| [y, x, z]),
-        ..s
-    };
-    let gravity_sign: Spoil = |s| Sample {
-        accel: s.accel.map(|f| f.map(|c| -c)),
-        ..s
-    };
-    let swapped_mag: Spoil = |s| Sample {
-        mag: s.mag.map(|[x, y, z]| [y, x, z]),
-        ..s
-    };
-    let flipped_mag: Spoil = |s| Sample {
-        mag: s.mag.map(|[x, y, z]| [x, y, -z]),
-        ..s
-    };
+    let swapped_gyro: Spoil = |s| Sample { gyro: s.gyro.map(|[x, y, z]| [x, z, y]), ..s };
+    let flipped_gyro: Spoil = |s| Sample { gyro: s.gyro.map(|[x, y, z]| [x, y, -z]), ..s };
+    let degrees_gyro: Spoil = |s| Sample { gyro: s.gyro.map(|w| w.map(|c| c * 1.2)), ..s };
+    let swapped_accel: Spoil = |s| Sample { accel: s.accel.map(|[x, y, z]| [y, x, z]), ..s };
+    let gravity_sign: Spoil = |s| Sample { accel: s.accel.map(|f| f.map(|c| -c)), ..s };
+    let swapped_mag: Spoil = |s| Sample { mag: s.mag.map(|[x, y, z]| [y, x, z]), ..s };
+    let flipped_mag: Spoil = |s| Sample { mag: s.mag.map(|[x, y, z]| [x, y, -z]), ..s };
     let spoils = [
         ("gyro axes swapped", swapped_gyro),
         ("gyro sign flipped", flipped_gyro),
@@ -106,10 +75,7 @@ fn wrong_axes_signs_scales_and_declination_do_not_pass() {
     for kind in [Kind::Vqf, Kind::Fusion] {
         for (name, spoil) in spoils {
             let worst = worst_deg(kind, TURNING, [2_000, 4_000, 10_000], spoil);
-            assert!(
-                worst > 2.0 * bound_deg(kind),
-                "{kind}, {name}: only {worst} deg"
-            );
+            assert!(worst > 2.0 * bound_deg(kind), "{kind}, {name}: only {worst} deg");
         }
     }
 }

@@ -35,11 +35,7 @@ const CONFIG: config::Repr = config::Repr {
 fn mpu_packets(samples: &[Sample]) -> Vec<Vec<u8>> {
     let mut packets = vec![(0, Packet::Config(CONFIG))];
     for sample in samples {
-        packets.extend(
-            mpu_of(sample)
-                .into_iter()
-                .map(|packet| (sample.t_us, packet)),
-        );
+        packets.extend(mpu_of(sample).into_iter().map(|packet| (sample.t_us, packet)));
     }
     let numbered = packets.into_iter().enumerate();
     numbered
@@ -67,11 +63,7 @@ fn mpu_of(sample: &Sample) -> Vec<Packet> {
     if let Some(field) = sample.mag {
         let own = registers::swap_mag_axes(chip(field));
         let field = std::array::from_fn(|i| registers::mag_raw(own[i], CONFIG.asa[i]));
-        packets.push(Packet::Mag(mag::Repr {
-            st1: 1,
-            field,
-            st2: registers::ST2_16_BIT,
-        }));
+        packets.push(Packet::Mag(mag::Repr { st1: 1, field, st2: registers::ST2_16_BIT }));
     }
     packets
 }
@@ -94,12 +86,7 @@ fn mavlink_packets(samples: &[Sample]) -> Vec<Vec<u8>> {
                 ..Default::default()
             });
             let seq = seq as u8;
-            let header = Header {
-                version: Version::V2,
-                seq,
-                system: 9,
-                component: 1,
-            };
+            let header = Header { version: Version::V2, seq, system: 9, component: 1 };
             let mut bytes = [0; mavlink::MAX_LEN];
             let len = mavlink::encode(&header, &message, &mut bytes).unwrap();
             bytes[..len].to_vec()
@@ -116,11 +103,7 @@ fn packets(protocol: Protocol, body: Body) -> Vec<Vec<u8>> {
 }
 
 fn options(ahrs: Kind) -> Options {
-    Options {
-        ahrs,
-        declination_rad: DECLINATION_RAD,
-        ..Options::default()
-    }
+    Options { ahrs, declination_rad: DECLINATION_RAD, ..Options::default() }
 }
 
 /// A board that has read these bytes to their end.
@@ -166,11 +149,7 @@ fn lost_and_damaged_packets_are_counted_and_cost_little() {
         let damaged = (100..packets.len() - 50).step_by(100).count() as u64;
         let board = board_after(protocol, Kind::Vqf, packets.concat());
         let counts = board.report().counts;
-        assert_eq!(
-            (counts.damaged, counts.lost),
-            (damaged, 2 * damaged),
-            "{protocol}"
-        );
+        assert_eq!((counts.damaged, counts.lost), (damaged, 2 * damaged), "{protocol}");
         assert!(worst_deg(&board, TURNING) < 1.0, "{protocol}");
     }
 }
@@ -182,10 +161,7 @@ fn the_wrong_declination_is_seen_as_a_heading_error() {
     let mut board = Board::over(port, Protocol::Mpu, Options::default());
     board.run(&AtomicBool::new(false)).unwrap();
     let worst = worst_deg(&board, TURNING);
-    assert!(
-        (worst - DECLINATION_RAD.to_degrees()).abs() < 0.5,
-        "{worst} deg"
-    );
+    assert!((worst - DECLINATION_RAD.to_degrees()).abs() < 0.5, "{worst} deg");
 }
 
 #[test]
@@ -213,19 +189,13 @@ fn pty() -> (OwnedFd, String) {
 fn a_board_on_a_pty_answers_with_the_echo_of_its_newest_sample() {
     let (master, path) = pty();
     let every_us = 20_000;
-    let options = Options {
-        answer_every_us: Some(every_us),
-        ..options(Kind::Vqf)
-    };
+    let options = Options { answer_every_us: Some(every_us), ..options(Kind::Vqf) };
     let mut board = Board::open(&path, Protocol::Mpu, options).unwrap();
     let mut decoder = mpu::Decoder::new();
     let mut answers = Vec::new();
     for packet in packets(Protocol::Mpu, TURNING) {
         assert_eq!(rustix::io::write(&master, &packet).unwrap(), packet.len());
-        assert!(matches!(
-            board.step(Duration::from_secs(5)).unwrap(),
-            Step::Data { .. }
-        ));
+        assert!(matches!(board.step(Duration::from_secs(5)).unwrap(), Step::Data { .. }));
         if board.report().answers_sent > answers.len() as u64 {
             let mut bytes = [0; 256];
             let len = rustix::io::read(&master, &mut bytes).unwrap();
@@ -237,15 +207,11 @@ fn a_board_on_a_pty_answers_with_the_echo_of_its_newest_sample() {
     assert_eq!(board.step(Duration::from_secs(5)).unwrap(), Step::Closed);
 
     assert_eq!(board.report().answers_sent, answers.len() as u64);
-    let spacing = answers
-        .windows(2)
-        .map(|pair| u64::from(pair[1].t_us - pair[0].t_us));
+    let spacing = answers.windows(2).map(|pair| u64::from(pair[1].t_us - pair[0].t_us));
     assert!(spacing.into_iter().all(|us| us == every_us));
     for (seq, answer) in answers.iter().enumerate() {
         assert_eq!(answer.seq, seq as u8);
-        let Packet::Attitude(repr) = answer.packet else {
-            panic!("{answer:?}")
-        };
+        let Packet::Attitude(repr) = answer.packet else { panic!("{answer:?}") };
         let q = repr.q.map(f64::from);
         let error = angle_between(q, TURNING.attitude(f64::from(answer.t_us) * 1e-6));
         assert!(answer.t_us < 5_000_000 || error.to_degrees() < 0.5);
@@ -256,10 +222,7 @@ fn a_board_on_a_pty_answers_with_the_echo_of_its_newest_sample() {
 #[test]
 fn a_board_answers_over_mavlink_with_attitude_and_heartbeat() {
     let (master, path) = pty();
-    let options = Options {
-        answer_every_us: Some(100_000),
-        ..options(Kind::Vqf)
-    };
+    let options = Options { answer_every_us: Some(100_000), ..options(Kind::Vqf) };
     let mut board = Board::open(&path, Protocol::Mavlink, options).unwrap();
     for packet in packets(Protocol::Mavlink, TURNING).iter().take(500) {
         assert_eq!(rustix::io::write(&master, packet).unwrap(), packet.len());

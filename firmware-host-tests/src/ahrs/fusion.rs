@@ -2,7 +2,7 @@
 
 use fusion_ahrs::{AhrsSettings, Convention, Quaternion};
 
-use super::{Ahrs, to_true_north};
+use super::{Ahrs, Periods, to_true_north};
 use crate::quaternion::from_accel_mag;
 
 /// Standard gravity, m/s²: one g.
@@ -20,10 +20,12 @@ pub struct Fusion {
 }
 
 impl Fusion {
-    /// A filter in NED; `declination_rad` turns magnetic to true north.
-    pub fn new(declination_rad: f64) -> Self {
+    /// A filter in NED for a gyro of this period; `declination_rad` turns magnetic to true north.
+    pub fn new(periods: Periods, declination_rad: f64) -> Self {
         let settings = AhrsSettings {
             convention: Convention::Ned,
+            // It counts its startup of 3 s in samples.
+            sample_rate: (1.0 / periods.gyro_s) as f32,
             ..AhrsSettings::default()
         };
         Self {
@@ -54,9 +56,7 @@ impl Ahrs for Fusion {
         }
         self.filter.set_sample_period(dt_s as f32);
         let rate = rate.map(|w| w.to_degrees() as f32);
-        let accel = self
-            .accel
-            .map_or([0.0; 3], |force| force.map(|f| (f / G) as f32));
+        let accel = self.accel.map_or([0.0; 3], |force| force.map(|f| (f / G) as f32));
         match self.mag {
             Some(field) => self.filter.update(rate, accel, field.map(|m| m as f32)),
             None => self.filter.update_no_magnetometer(rate, accel),

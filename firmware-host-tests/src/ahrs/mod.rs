@@ -46,11 +46,7 @@ pub struct Periods {
 impl Default for Periods {
     /// 100 Hz each.
     fn default() -> Self {
-        Self {
-            gyro_s: 0.01,
-            accel_s: 0.01,
-            mag_s: 0.01,
-        }
+        Self { gyro_s: 0.01, accel_s: 0.01, mag_s: 0.01 }
     }
 }
 
@@ -70,7 +66,7 @@ impl Kind {
     pub fn build(self, periods: Periods, declination_rad: f64) -> Box<dyn Ahrs + Send> {
         match self {
             Self::Vqf => Box::new(Vqf::new(periods, declination_rad)),
-            Self::Fusion => Box::new(Fusion::new(declination_rad)),
+            Self::Fusion => Box::new(Fusion::new(periods, declination_rad)),
         }
     }
 }

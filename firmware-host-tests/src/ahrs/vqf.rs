@@ -29,16 +29,8 @@ pub struct Vqf {
 impl Vqf {
     /// A filter for readings so far apart; `declination_rad` turns magnetic to true north.
     pub fn new(periods: Periods, declination_rad: f64) -> Self {
-        let Periods {
-            gyro_s,
-            accel_s,
-            mag_s,
-        } = periods;
-        Self {
-            filter: VQF::new(gyro_s, Some(accel_s), Some(mag_s), None),
-            declination_rad,
-            has_mag: false,
-        }
+        let Periods { gyro_s, accel_s, mag_s } = periods;
+        Self { filter: VQF::new(gyro_s, Some(accel_s), Some(mag_s), None), declination_rad, has_mag: false }
     }
 }
 

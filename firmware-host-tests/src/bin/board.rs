@@ -50,18 +50,13 @@ fn run(arguments: &Arguments) -> std::io::Result<Report> {
 fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     let mut path = None;
     let mut protocol = Protocol::default();
-    let mut options = Options {
-        answer_every_us: Some(20_000),
-        ..Options::default()
-    };
+    let mut options = Options { answer_every_us: Some(20_000), ..Options::default() };
     while let Some(word) = words.next() {
         if !word.starts_with('-') && path.is_none() {
             path = Some(word);
             continue;
         }
-        let value = words
-            .next()
-            .ok_or_else(|| format!("{word} needs a value"))?;
+        let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
         match word.as_str() {
             "--protocol" => protocol = value.parse()?,
             "--ahrs" => options.ahrs = value.parse()?,
@@ -77,17 +72,11 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         }
     }
     let path = path.ok_or("no path")?;
-    Ok(Arguments {
-        path,
-        protocol,
-        options,
-    })
+    Ok(Arguments { path, protocol, options })
 }
 
 fn number<T: std::str::FromStr>(word: &str, value: &str) -> Result<T, String> {
-    value
-        .parse()
-        .map_err(|_| format!("{word}: `{value}` is not a number that fits"))
+    value.parse().map_err(|_| format!("{word}: `{value}` is not a number that fits"))
 }
 
 /// The counts and the last attitude, in words.

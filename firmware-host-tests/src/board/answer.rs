@@ -3,9 +3,7 @@
 use std::io;
 use std::time::Instant;
 
-use ratetable_protocols::mavlink::{
-    self, Header, Message, Version, attitude_quaternion, heartbeat,
-};
+use ratetable_protocols::mavlink::{self, Header, Message, Version, attitude_quaternion, heartbeat};
 use ratetable_protocols::mpu::{self, Packet, attitude};
 
 use super::port::Port;
@@ -56,12 +54,7 @@ impl Answers {
     }
 
     /// Says the attitude after `sample`, if it is time to.
-    pub(super) fn attitude(
-        &mut self,
-        port: &mut dyn Port,
-        sample: &Sample,
-        q: [f64; 4],
-    ) -> io::Result<()> {
+    pub(super) fn attitude(&mut self, port: &mut dyn Port, sample: &Sample, q: [f64; 4]) -> io::Result<()> {
         if !self.is_due(sample.t_us) {
             return Ok(());
         }
@@ -103,28 +96,15 @@ impl Answers {
         true
     }
 
-    fn mpu_attitude(
-        &mut self,
-        port: &mut dyn Port,
-        sample: &Sample,
-        q: [f64; 4],
-    ) -> io::Result<()> {
-        let repr = attitude::Repr {
-            clock_us: self.clock_us() as u32,
-            q: q.map(|c| c as f32),
-        };
+    fn mpu_attitude(&mut self, port: &mut dyn Port, sample: &Sample, q: [f64; 4]) -> io::Result<()> {
+        let repr = attitude::Repr { clock_us: self.clock_us() as u32, q: q.map(|c| c as f32) };
         let mut bytes = [0; mpu::MAX_LEN];
         let packet = Packet::Attitude(repr);
         let len = mpu::encode(self.seq, sample.t_us as u32, &packet, &mut bytes);
         self.send(port, &bytes[..len.map_err(io::Error::other)?])
     }
 
-    fn mavlink_attitude(
-        &mut self,
-        port: &mut dyn Port,
-        sample: &Sample,
-        q: [f64; 4],
-    ) -> io::Result<()> {
+    fn mavlink_attitude(&mut self, port: &mut dyn Port, sample: &Sample, q: [f64; 4]) -> io::Result<()> {
         let repr = attitude_quaternion::Repr {
             time_boot_ms: (sample.t_us / 1000) as u32,
             q: q.map(|c| c as f32),
@@ -135,12 +115,7 @@ impl Answers {
     }
 
     fn send_message(&mut self, port: &mut dyn Port, message: &Message) -> io::Result<()> {
-        let header = Header {
-            version: Version::V2,
-            seq: self.seq,
-            system: SYSTEM,
-            component: COMPONENT,
-        };
+        let header = Header { version: Version::V2, seq: self.seq, system: SYSTEM, component: COMPONENT };
         let mut bytes = [0; mavlink::MAX_LEN];
         let len = mavlink::encode(&header, message, &mut bytes).map_err(io::Error::other)?;
         self.send(port, &bytes[..len])

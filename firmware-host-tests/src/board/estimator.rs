@@ -28,12 +28,7 @@ struct Running {
 
 impl Estimator {
     pub(super) fn new(kind: Kind, declination_rad: f64) -> Self {
-        Self {
-            kind,
-            declination_rad,
-            held: Vec::new(),
-            running: None,
-        }
+        Self { kind, declination_rad, held: Vec::new(), running: None }
     }
 
     /// Takes a sample; adds an attitude to `history` after each gyro reading.
@@ -54,10 +49,7 @@ impl Estimator {
             return;
         }
         let ahrs = self.kind.build(periods(&self.held), self.declination_rad);
-        let mut running = Running {
-            ahrs,
-            last_gyro_us: None,
-        };
+        let mut running = Running { ahrs, last_gyro_us: None };
         for sample in self.held.drain(..) {
             running.take(&sample, history);
         }
@@ -74,10 +66,7 @@ impl Running {
     /// Gives a sample's readings to the filter, in the order gyro, accelerometer, magnetometer.
     fn take(&mut self, sample: &Sample, history: &mut Vec<(u64, [f64; 4])>) {
         if let Some(rate) = sample.gyro {
-            let last = self
-                .last_gyro_us
-                .replace(sample.t_us)
-                .unwrap_or(sample.t_us);
+            let last = self.last_gyro_us.replace(sample.t_us).unwrap_or(sample.t_us);
             let dt_us = sample.t_us.saturating_sub(last);
             self.ahrs.gyro(dt_us as f64 * 1e-6, rate);
             history.push((sample.t_us, self.ahrs.attitude()));
@@ -120,14 +109,10 @@ fn periods(held: &[Sample]) -> Periods {
 /// The median of the positive intervals between times in µs, s.
 fn median_interval_s(times: &[u64]) -> Option<f64> {
     let pairs = times.windows(2);
-    let mut intervals: Vec<u64> = pairs
-        .map(|pair| pair[1].saturating_sub(pair[0]))
-        .filter(|&interval| interval > 0)
-        .collect();
+    let mut intervals: Vec<u64> =
+        pairs.map(|pair| pair[1].saturating_sub(pair[0])).filter(|&interval| interval > 0).collect();
     intervals.sort_unstable();
-    intervals
-        .get(intervals.len() / 2)
-        .map(|&median| median as f64 * 1e-6)
+    intervals.get(intervals.len() / 2).map(|&median| median as f64 * 1e-6)
 }
 
 #[cfg(test)]
@@ -139,18 +124,9 @@ mod tests {
         let mut held = Vec::new();
         for k in (0..60_u64).filter(|&k| k != 7) {
             let due = |every| (k % every == 0).then_some([0.0, 0.0, 1.0]);
-            held.push(Sample {
-                t_us: k * 1000,
-                gyro: due(1),
-                accel: due(2),
-                mag: due(10),
-            });
+            held.push(Sample { t_us: k * 1000, gyro: due(1), accel: due(2), mag: due(10) });
         }
-        let expected = Periods {
-            gyro_s: 0.001,
-            accel_s: 0.002,
-            mag_s: 0.01,
-        };
+        let expected = Periods { gyro_s: 0.001, accel_s: 0.002, mag_s: 0.01 };
         let found = periods(&held);
         assert!((found.gyro_s - expected.gyro_s).abs() < 1e-12);
         assert!((found.accel_s - expected.accel_s).abs() < 1e-12);
@@ -163,11 +139,7 @@ mod tests {
         let mut history = Vec::new();
         for k in 0..200 {
             let gyro = Some([0.0; 3]);
-            let sample = Sample {
-                t_us: k * 1000,
-                gyro,
-                ..Sample::default()
-            };
+            let sample = Sample { t_us: k * 1000, gyro, ..Sample::default() };
             estimator.take(&sample, &mut history);
         }
         assert_eq!(history.len(), 200);

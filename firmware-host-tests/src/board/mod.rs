@@ -111,9 +111,7 @@ impl Board {
             port,
             driver: protocol.driver(),
             estimator: Estimator::new(options.ahrs, options.declination_rad),
-            answers: options
-                .answer_every_us
-                .map(|every| Answers::new(protocol, every, started)),
+            answers: options.answer_every_us.map(|every| Answers::new(protocol, every, started)),
             history: Vec::new(),
             attitude: None,
             span_us: None,

@@ -110,12 +110,12 @@ impl<R: Read> Port for Source<R> {
             Ok(0) => Ok(Arrival::Closed),
             Ok(len) => Ok(Arrival::Bytes(len)),
             Err(error) => match error.kind() {
-                io::ErrorKind::WouldBlock
-                | io::ErrorKind::TimedOut
-                | io::ErrorKind::Interrupted => Ok(Arrival::Idle),
-                io::ErrorKind::BrokenPipe
-                | io::ErrorKind::ConnectionReset
-                | io::ErrorKind::UnexpectedEof => Ok(Arrival::Closed),
+                io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => {
+                    Ok(Arrival::Idle)
+                }
+                io::ErrorKind::BrokenPipe | io::ErrorKind::ConnectionReset | io::ErrorKind::UnexpectedEof => {
+                    Ok(Arrival::Closed)
+                }
                 _ => Err(error),
             },
         }

@@ -45,10 +45,7 @@ impl Driver for MavlinkDriver {
     }
 
     fn counts(&self) -> Counts {
-        Counts {
-            lost: self.state.losses.lost(),
-            ..self.state.counts
-        }
+        Counts { lost: self.state.losses.lost(), ..self.state.counts }
     }
 }
 
@@ -95,12 +92,7 @@ mod tests {
     use ratetable_protocols::mavlink::{self, Header, Version};
 
     fn feed(driver: &mut MavlinkDriver, seq: u8, message: hil_sensor::Repr) -> Vec<Sample> {
-        let header = Header {
-            version: Version::V2,
-            seq,
-            system: 1,
-            component: 1,
-        };
+        let header = Header { version: Version::V2, seq, system: 1, component: 1 };
         let mut bytes = [0; mavlink::MAX_LEN];
         let message = Message::HilSensor(message);
         let len = mavlink::encode(&header, &message, &mut bytes).unwrap();
@@ -120,25 +112,17 @@ mod tests {
             fields_updated: hil_sensor::GYRO | hil_sensor::MAG,
             ..Default::default()
         };
-        let [sample] = feed(&mut driver, 0, message)[..] else {
-            panic!()
-        };
+        let [sample] = feed(&mut driver, 0, message)[..] else { panic!() };
         assert_eq!(sample.t_us, 5_000);
         assert_eq!(sample.gyro, Some([0.5, 0.0, 0.0]));
         assert_eq!(sample.accel, None);
         assert_eq!(sample.mag, Some([25.0, 0.0, 50.0]));
 
-        let nothing = hil_sensor::Repr {
-            fields_updated: hil_sensor::PRESSURE,
-            ..message
-        };
+        let nothing = hil_sensor::Repr { fields_updated: hil_sensor::PRESSURE, ..message };
         assert!(feed(&mut driver, 3, nothing).is_empty());
         let other = hil_sensor::Repr { id: 1, ..message };
         assert!(feed(&mut driver, 4, other).is_empty());
         let counts = driver.counts();
-        assert_eq!(
-            (counts.packets, counts.lost, counts.gyro, counts.skipped),
-            (3, 2, 1, 2)
-        );
+        assert_eq!((counts.packets, counts.lost, counts.gyro, counts.skipped), (3, 2, 1, 2));
     }
 }

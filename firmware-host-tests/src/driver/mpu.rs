@@ -27,8 +27,7 @@ impl Mount {
 
     /// A vector in chip axes as one in body axes.
     pub fn to_body(&self, chip: [f64; 3]) -> [f64; 3] {
-        self.0
-            .map(|row| row[0] * chip[0] + row[1] * chip[1] + row[2] * chip[2])
+        self.0.map(|row| row[0] * chip[0] + row[1] * chip[1] + row[2] * chip[2])
     }
 }
 
@@ -83,10 +82,7 @@ impl MpuDriver {
             counts: Counts::default(),
             temperature_c: None,
         };
-        Self {
-            decoder: mpu::Decoder::new(),
-            state,
-        }
+        Self { decoder: mpu::Decoder::new(), state }
     }
 
     /// The chip's temperature, °C, once an `imu` packet of a known chip has come.
@@ -109,10 +105,7 @@ impl Driver for MpuDriver {
     }
 
     fn counts(&self) -> Counts {
-        Counts {
-            lost: self.state.losses.lost(),
-            ..self.state.counts
-        }
+        Counts { lost: self.state.losses.lost(), ..self.state.counts }
     }
 }
 
@@ -126,9 +119,7 @@ impl State {
             return None;
         }
         let t_us = self.time.unwrap(received.t_us);
-        let sample = self
-            .scales
-            .and_then(|scales| self.read(t_us, &scales, &received.packet));
+        let sample = self.scales.and_then(|scales| self.read(t_us, &scales, &received.packet));
         match &sample {
             Some(sample) => self.counts.take(sample),
             None => self.counts.skipped += 1,
@@ -138,20 +129,13 @@ impl State {
 
     /// A packet's readings in units and body axes.
     fn read(&mut self, t_us: u64, scales: &Scales, packet: &Packet) -> Option<Sample> {
-        let none = Sample {
-            t_us,
-            ..Sample::default()
-        };
+        let none = Sample { t_us, ..Sample::default() };
         match packet {
             Packet::Imu(imu) => {
                 self.temperature_c = temperature_c(scales, imu);
                 let gyro = Some(self.inertial(imu.gyro, scales.gyro));
                 let accel = Some(self.inertial(imu.accel, scales.accel));
-                Some(Sample {
-                    gyro,
-                    accel,
-                    ..none
-                })
+                Some(Sample { gyro, accel, ..none })
             }
             Packet::Gyro(repr) => {
                 let gyro = Some(self.inertial(repr.gyro, scales.gyro));
@@ -171,8 +155,7 @@ impl State {
 
     /// Counts of gyro or accelerometer as units in body axes.
     fn inertial(&self, counts: [i16; 3], scale: f64) -> [f64; 3] {
-        self.mount
-            .to_body(counts.map(|count| f64::from(count) * scale))
+        self.mount.to_body(counts.map(|count| f64::from(count) * scale))
     }
 }
 
@@ -225,39 +208,24 @@ mod tests {
         let gyro = Packet::Gyro(gyro::Repr { gyro: [164, 0, 0] });
         assert!(feed(&mut driver, 0, 0, gyro).is_empty());
         assert!(feed(&mut driver, 1, 0, Packet::Config(CONFIG)).is_empty());
-        let [sample] = feed(&mut driver, 4, 1000, gyro)[..] else {
-            panic!()
-        };
+        let [sample] = feed(&mut driver, 4, 1000, gyro)[..] else { panic!() };
         assert_eq!(sample.t_us, 1000);
         assert!((sample.gyro.unwrap()[0] - 10_f64.to_radians()).abs() < 1e-12);
         let counts = driver.counts();
-        assert_eq!(
-            (counts.packets, counts.lost, counts.gyro, counts.skipped),
-            (3, 2, 1, 1)
-        );
+        assert_eq!((counts.packets, counts.lost, counts.gyro, counts.skipped), (3, 2, 1, 1));
     }
 
     #[test]
     fn a_chip_lying_flat_gives_level_readings_in_body_axes() {
         let mut driver = MpuDriver::new(Mount::FLU);
         feed(&mut driver, 0, 0, Packet::Config(CONFIG));
-        let flat = Packet::Accel(accel::Repr {
-            accel: [0, 0, 8192],
-        });
-        let [sample] = feed(&mut driver, 1, 0, flat)[..] else {
-            panic!()
-        };
+        let flat = Packet::Accel(accel::Repr { accel: [0, 0, 8192] });
+        let [sample] = feed(&mut driver, 1, 0, flat)[..] else { panic!() };
         assert_eq!(sample.accel.map(|f| f[2]), Some(-G));
 
         // Field north 15 µT and down 30 µT: chip (FLU) [15, 0, -30], AK8963 [0, 15, 30].
-        let field = Packet::Mag(mag::Repr {
-            st1: 1,
-            field: [0, 100, 200],
-            st2: 0x10,
-        });
-        let [sample] = feed(&mut driver, 2, 0, field)[..] else {
-            panic!()
-        };
+        let field = Packet::Mag(mag::Repr { st1: 1, field: [0, 100, 200], st2: 0x10 });
+        let [sample] = feed(&mut driver, 2, 0, field)[..] else { panic!() };
         assert_eq!(sample.mag, Some([15.0, 0.0, 30.0]));
     }
 
@@ -266,11 +234,7 @@ mod tests {
         let mut driver = MpuDriver::new(Mount::FLU);
         feed(&mut driver, 0, 0, Packet::Config(CONFIG));
         for (st1, st2) in [(1, 0x18), (0, 0x10)] {
-            let packet = Packet::Mag(mag::Repr {
-                st1,
-                field: [1, 2, 3],
-                st2,
-            });
+            let packet = Packet::Mag(mag::Repr { st1, field: [1, 2, 3], st2 });
             assert!(feed(&mut driver, 1, 0, packet).is_empty());
         }
         assert_eq!(driver.counts().skipped, 2);
@@ -280,14 +244,8 @@ mod tests {
     fn a_burst_carries_both_and_the_temperature() {
         let mut driver = MpuDriver::new(Mount::FRD);
         feed(&mut driver, 0, 0, Packet::Config(CONFIG));
-        let burst = imu::Repr {
-            accel: [0, 0, -8192],
-            temperature: 1335,
-            gyro: [0, 0, 164],
-        };
-        let [sample] = feed(&mut driver, 1, 7, Packet::Imu(burst))[..] else {
-            panic!()
-        };
+        let burst = imu::Repr { accel: [0, 0, -8192], temperature: 1335, gyro: [0, 0, 164] };
+        let [sample] = feed(&mut driver, 1, 7, Packet::Imu(burst))[..] else { panic!() };
         assert_eq!(sample.accel, Some([0.0, 0.0, -G]));
         assert!((sample.gyro.unwrap()[2].to_degrees() - 10.0).abs() < 1e-9);
         assert!((driver.temperature_c().unwrap() - 25.0).abs() < 0.01);

@@ -11,11 +11,7 @@ pub const DECLINATION_RAD: f64 = 0.2;
 pub fn field_ut() -> [f64; 3] {
     let horizontal = 50.0 * 60_f64.to_radians().cos();
     let (s, c) = DECLINATION_RAD.sin_cos();
-    [
-        horizontal * c,
-        horizontal * s,
-        50.0 * 60_f64.to_radians().sin(),
-    ]
+    [horizontal * c, horizontal * s, 50.0 * 60_f64.to_radians().sin()]
 }
 
 /// A body that starts with some attitude and turns at a constant rate about its own axes.
@@ -34,11 +30,7 @@ impl Body {
         let rate = self.rate();
         let norm = rate.iter().map(|w| w * w).sum::<f64>().sqrt();
         let start = from_euler(roll, pitch, yaw);
-        if norm == 0.0 {
-            start
-        } else {
-            mul(start, about(rate.map(|w| w / norm), norm * t))
-        }
+        if norm == 0.0 { start } else { mul(start, about(rate.map(|w| w / norm), norm * t)) }
     }
 
     pub fn rate(&self) -> [f64; 3] {
@@ -66,19 +58,7 @@ impl Body {
     }
 }
 
-pub const LEVEL: Body = Body {
-    start_deg: [0.0; 3],
-    rate_dps: [0.0; 3],
-};
-pub const TILTED: Body = Body {
-    start_deg: [30.0, 10.0, 90.0],
-    rate_dps: [0.0; 3],
-};
-pub const TURNING: Body = Body {
-    start_deg: [30.0, 10.0, 90.0],
-    rate_dps: [3.0, -5.0, 20.0],
-};
-pub const SLOW_TURN: Body = Body {
-    start_deg: [0.0, 0.0, 179.0],
-    rate_dps: [0.0, 0.0, 3.0],
-};
+pub const LEVEL: Body = Body { start_deg: [0.0; 3], rate_dps: [0.0; 3] };
+pub const TILTED: Body = Body { start_deg: [30.0, 10.0, 90.0], rate_dps: [0.0; 3] };
+pub const TURNING: Body = Body { start_deg: [30.0, 10.0, 90.0], rate_dps: [3.0, -5.0, 20.0] };
+pub const SLOW_TURN: Body = Body { start_deg: [0.0, 0.0, 179.0], rate_dps: [0.0, 0.0, 3.0] };
