@@ -5,13 +5,15 @@
 use std::io;
 use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
+use std::pin::Pin;
 use std::sync::Arc;
+use std::task::{Context, Poll, ready};
 use std::time::Duration;
 
 use rustix::process::{Resource, getrlimit};
 use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
-use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
+use tokio::io::{AsyncRead, Interest, ReadBuf};
 
 /// Bytes that the kernel still holds for the other side of a terminal or a socket
 /// (`TIOCOUTQ`, which on a socket is the same call as `SIOCOUTQ`).
@@ -55,6 +57,24 @@ impl Readable {
             let mut ready = self.0.readable().await?;
             if let Ok(answer) = ready.try_io(|file| read(file.get_ref().as_fd())) {
                 return answer;
+            }
+        }
+    }
+}
+
+impl AsyncRead for Readable {
+    fn poll_read(
+        self: Pin<&mut Self>,
+        task: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        loop {
+            let mut ready = ready!(self.0.poll_read_ready(task))?;
+            let read = |file: &AsyncFd<Arc<OwnedFd>>| {
+                Ok(rustix::io::read(file.get_ref(), buffer.initialize_unfilled())?)
+            };
+            if let Ok(answer) = ready.try_io(read) {
+                return Poll::Ready(answer.map(|count| buffer.advance(count)));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Where a link goes, as the user spells it.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::LinkError;
@@ -29,7 +29,7 @@ pub enum Address {
         /// Its speed; [`DEFAULT_BAUD`] where none was given.
         baud: Option<u32>,
     },
-    /// A TCP socket that waits for one peer to connect.
+    /// A TCP socket that waits for one peer to connect, and turns all others away.
     TcpIn(Place),
     /// A TCP connection to a listening peer.
     TcpOut(Place),
@@ -142,11 +142,6 @@ impl Problem {
     pub(super) fn new(what: impl Into<String>, right: impl Into<String>) -> Self {
         Self { what: what.into(), right: right.into() }
     }
-}
-
-/// A path as text for a message.
-pub(super) fn shown(path: &Path) -> String {
-    path.display().to_string()
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@
 //! [`Receiver`] for a task.
 //!
 //! Every kind of link is one file of the same shape: its line in the table, the address it reads,
-//! `open`, `name`, `peer`, `sender`, `receiver`, `close`, then the two halves. [`SCHEMES`] lists
-//! them. A link that reaches beyond this machine does so only because an address was given.
+//! how it is opened, whom it waits for at the start and at the end, then its two halves.
+//! [`SCHEMES`] lists them. A link that reaches beyond this machine does so only because an address was given.
 
 mod address;
 mod error;
@@ -29,7 +29,8 @@ mod tty;
 mod udp;
 mod visitors;
 
-use std::path::Path;
+use std::fmt::Display;
+use std::io;
 
 pub use address::{Address, DEFAULT_BAUD, Place};
 pub use error::LinkError;
@@ -43,35 +44,20 @@ pub use sender::{MAX_PACKET, Sender, Sent};
 /// An open link.
 pub struct Link {
     name: String,
+    notices: Vec<String>,
     kind: Kind,
-    sender_taken: bool,
-    receiver_taken: bool,
+    sender: Option<Sender>,
+    receiver: Option<Receiver>,
 }
 
-/// The kinds of link.
+/// What is left of a link when its two halves have been taken.
 enum Kind {
     Pty(pty::Pty),
     Serial(serial::Serial),
     Tcp(tcp::Tcp),
     Udp(udp::Udp),
-    File(file::File),
-    Stdout(stdout::Stdout),
-    Memory(memory::Memory),
-}
-
-/// Does the same with every kind of link.
-macro_rules! each {
-    ($kind:expr, $link:ident => $do:expr) => {
-        match $kind {
-            Kind::Pty($link) => $do,
-            Kind::Serial($link) => $do,
-            Kind::Tcp($link) => $do,
-            Kind::Udp($link) => $do,
-            Kind::File($link) => $do,
-            Kind::Stdout($link) => $do,
-            Kind::Memory($link) => $do,
-        }
-    };
+    /// Somebody is always there, and nothing is waited for.
+    Plain,
 }
 
 impl Link {
@@ -81,24 +67,20 @@ impl Link {
     /// # Panics
     /// Outside a tokio runtime with I/O and time enabled.
     pub async fn open(address: &Address) -> Result<Self, LinkError> {
-        let kind = match address {
-            Address::Pty { path } => Kind::Pty(pty::Pty::open(address, path.as_deref()).await?),
-            Address::Serial { path, baud } => {
-                let baud = baud.unwrap_or(DEFAULT_BAUD);
-                Kind::Serial(serial::Serial::open(address, path, baud).await?)
-            }
-            Address::TcpIn(place) => Kind::Tcp(tcp::Tcp::listen(address, place).await?),
-            Address::TcpOut(place) => Kind::Tcp(tcp::Tcp::connect(address, place).await?),
-            Address::UdpIn(place) => Kind::Udp(udp::Udp::listen(address, place).await?),
-            Address::UdpOut(place) => Kind::Udp(udp::Udp::aim(address, place).await?),
-            Address::File { path } => Kind::File(file::File::open(address, path).await?),
-            Address::Stdout => Kind::Stdout(stdout::Stdout::open(address).await?),
-        };
-        Ok(Self::new(kind))
+        match address {
+            Address::Pty { path } => pty::open(address, path.as_deref()),
+            Address::Serial { path, baud } => serial::open(address, path, baud.unwrap_or(DEFAULT_BAUD)),
+            Address::TcpIn(place) => tcp::listen(address, place).await,
+            Address::TcpOut(place) => tcp::connect(address, place).await,
+            Address::UdpIn(place) => udp::listen(address, place).await,
+            Address::UdpOut(place) => udp::aim(address, place).await,
+            Address::File { path } => file::open(address, path),
+            Address::Stdout => stdout::open(address),
+        }
     }
 
-    fn new(kind: Kind) -> Self {
-        Self { name: each!(&kind, link => link.name()), kind, sender_taken: false, receiver_taken: false }
+    fn new(name: impl Display, kind: Kind, sender: Sender, receiver: Option<Receiver>) -> Self {
+        Self { name: name.to_string(), notices: Vec::new(), kind, sender: Some(sender), receiver }
     }
 
     /// What one connects to: `/dev/pts/4`, the path a pty is published at, `127.0.0.1:4560` with
@@ -107,22 +89,9 @@ impl Link {
         &self.name
     }
 
-    /// The same as a path, where the link has one.
-    pub fn path(&self) -> Option<&Path> {
-        match &self.kind {
-            Kind::Pty(link) => Some(link.path()),
-            Kind::Serial(link) => Some(link.path()),
-            Kind::File(link) => Some(link.path()),
-            Kind::Tcp(_) | Kind::Udp(_) | Kind::Stdout(_) | Kind::Memory(_) => None,
-        }
-    }
-
     /// What the user should know of how the link was opened, a sentence each.
     pub fn notices(&self) -> &[String] {
-        match &self.kind {
-            Kind::Serial(link) => link.notices(),
-            _ => &[],
-        }
+        &self.notices
     }
 
     /// Waits until somebody is there: on a pty, 100 ms after a reader has opened it; on `tcpin`,
@@ -131,7 +100,16 @@ impl Link {
     ///
     /// It may be given up at any time and called again.
     pub async fn peer(&mut self) -> Result<(), LinkError> {
-        each!(&mut self.kind, link => link.peer().await).map_err(|source| LinkError::Io {
+        let came: io::Result<()> = match &mut self.kind {
+            Kind::Pty(link) => {
+                link.peer().await;
+                Ok(())
+            }
+            Kind::Tcp(link) => link.peer().await,
+            Kind::Udp(link) => link.peer().await,
+            Kind::Serial(_) | Kind::Plain => Ok(()),
+        };
+        came.map_err(|source| LinkError::Io {
             link: self.name.clone(),
             doing: "wait for the other side".to_owned(),
             source,
@@ -141,7 +119,20 @@ impl Link {
     /// Whether somebody is there now, as far as the link can know: a pty's reader, or a peer that
     /// has come. Serial ports, files and standard output always have somebody.
     pub fn peer_is_present(&self) -> bool {
-        each!(&self.kind, link => link.present())
+        match &self.kind {
+            Kind::Pty(link) => link.present(),
+            Kind::Tcp(link) => link.present(),
+            Kind::Udp(link) => link.present(),
+            Kind::Serial(_) | Kind::Plain => true,
+        }
+    }
+
+    /// Whether somebody was there and nobody is now, where the [`Sender`] does not say so itself
+    /// ([`Sent::Gone`]): a pty without its reader is only `Full`, as another may come.
+    ///
+    /// It may read through `/proc`: ask now and then, not with every packet.
+    pub fn peer_has_left(&self) -> bool {
+        matches!(&self.kind, Kind::Pty(link) if link.has_left())
     }
 
     /// The sending side, for one thread.
@@ -149,18 +140,12 @@ impl Link {
     /// # Panics
     /// When it was taken before: two senders would mix their packets.
     pub fn sender(&mut self) -> Sender {
-        assert!(!self.sender_taken, "a link has one sender");
-        self.sender_taken = true;
-        each!(&mut self.kind, link => link.sender())
+        self.sender.take().expect("a link has one sender")
     }
 
     /// The receiving side; `None` where nothing comes back, or when it was taken before.
     pub fn receiver(&mut self) -> Option<Receiver> {
-        if self.receiver_taken {
-            return None;
-        }
-        self.receiver_taken = true;
-        each!(&mut self.kind, link => link.receiver()).map(Receiver)
+        self.receiver.take()
     }
 
     /// Closes the link after the other side has had up to a second to take what was sent.
@@ -168,6 +153,11 @@ impl Link {
     /// Drop the [`Sender`] (after [`Sender::finish`]) and the [`Receiver`] first. A link that is
     /// dropped instead waits for nothing; a published path is removed either way.
     pub async fn close(self) {
-        each!(self.kind, link => link.close().await);
+        match self.kind {
+            Kind::Pty(link) => link.close().await,
+            Kind::Serial(link) => link.close().await,
+            Kind::Tcp(link) => link.close().await,
+            Kind::Udp(_) | Kind::Plain => {}
+        }
     }
 }

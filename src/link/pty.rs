@@ -14,14 +14,18 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
 use rustix::pty::{OpenptFlags, grantpt, ioctl_tiocgptpeer, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use super::address::{Address, Problem};
+use super::receiver::{Receiver, Source};
 use super::scheme::{self, Scheme};
-use super::sender::{Carry, Sender, To};
+use super::sender::{Carry, Sender};
+use super::tty::Terminal;
 use super::visitors::Visitors;
-use super::{LinkError, receiver, tty};
-use crate::os;
+use super::{Kind, Link, LinkError};
+use crate::os::{self, Readable};
 
 /// Its line in the table of links.
 pub(super) const SCHEME: Scheme = Scheme {
@@ -49,74 +53,60 @@ const EMPTY_LOOKS: u32 = 4;
 
 /// An open pty.
 pub(super) struct Pty {
+    /// Closed, it would take from the reader what it has not read: it outlives both halves.
     master: Arc<OwnedFd>,
     slave: Arc<OwnedFd>,
     device: PathBuf,
     published: Option<PathBuf>,
     visitors: Visitors,
-    input: Option<tty::In>,
+}
+
+pub(super) fn open(address: &Address, path: Option<&Path>) -> Result<Link, LinkError> {
+    let link = address.to_string();
+    let (mut pty, readable) = pair().map_err(|source| LinkError::Io {
+        link: link.clone(),
+        doing: "make a pseudo terminal".to_owned(),
+        source,
+    })?;
+    if let Some(path) = path {
+        publish(&link, &pty.device, path)?;
+        pty.published = Some(path.to_owned());
+    }
+    let name = path.unwrap_or(&pty.device).display().to_string();
+    let sender = Sender::new(Terminal(Arc::clone(&pty.master)), Carry::packet());
+    Ok(Link::new(name, Kind::Pty(pty), sender, Some(Receiver(Source::Pty(readable)))))
+}
+
+/// Makes a raw pair, and the master as something to wait on.
+fn pair() -> io::Result<(Pty, Readable)> {
+    let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
+    let master = openpt(flags)?;
+    grantpt(&master)?;
+    unlockpt(&master)?;
+    fcntl_setfl(&master, fcntl_getfl(&master)? | OFlags::NONBLOCK)?;
+    let name = ptsname(&master, Vec::new())?;
+    let device = PathBuf::from(OsStr::from_bytes(name.as_bytes()));
+    let slave = Arc::new(ioctl_tiocgptpeer(&master, flags)?);
+    let mut modes = tcgetattr(&slave)?;
+    modes.make_raw();
+    tcsetattr(&slave, OptionalActions::Now, &modes)?;
+    let visitors = Visitors::watch(&device, Arc::clone(&slave))?;
+    let master = Arc::new(master);
+    let readable = Readable::new(Arc::clone(&master))?;
+    Ok((Pty { master, slave, device, published: None, visitors }, readable))
 }
 
 impl Pty {
-    pub(super) async fn open(address: &Address, path: Option<&Path>) -> Result<Self, LinkError> {
-        let link = address.to_string();
-        let mut pty = Self::new().map_err(|source| LinkError::Io {
-            link: link.clone(),
-            doing: "make a pseudo terminal".to_owned(),
-            source,
-        })?;
-        if let Some(path) = path {
-            publish(&link, &pty.device, path)?;
-            pty.published = Some(path.to_owned());
-        }
-        Ok(pty)
-    }
-
-    fn new() -> io::Result<Self> {
-        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
-        let master = openpt(flags)?;
-        grantpt(&master)?;
-        unlockpt(&master)?;
-        tty::make_nonblocking(&master)?;
-        let name = ptsname(&master, Vec::new())?;
-        let device = PathBuf::from(OsStr::from_bytes(name.as_bytes()));
-        let slave = Arc::new(ioctl_tiocgptpeer(&master, flags)?);
-        tty::make_raw(&slave, |_| Ok(()))?;
-        let master = Arc::new(master);
-        Ok(Self {
-            visitors: Visitors::watch(&device, Arc::clone(&slave))?,
-            input: Some(tty::In::new(Arc::clone(&master))?),
-            master,
-            slave,
-            device,
-            published: None,
-        })
-    }
-
-    pub(super) fn name(&self) -> String {
-        super::address::shown(self.path())
-    }
-
-    pub(super) fn path(&self) -> &Path {
-        self.published.as_deref().unwrap_or(&self.device)
-    }
-
     pub(super) fn present(&self) -> bool {
         self.visitors.present()
     }
 
-    pub(super) async fn peer(&mut self) -> io::Result<()> {
+    pub(super) fn has_left(&self) -> bool {
+        self.visitors.came() && !self.visitors.present()
+    }
+
+    pub(super) async fn peer(&mut self) {
         self.visitors.arrival().await;
-        Ok(())
-    }
-
-    pub(super) fn sender(&mut self) -> Sender {
-        let out = tty::Out { terminal: Arc::clone(&self.master), far: Some(Arc::clone(&self.slave)) };
-        Sender::new(To::Tty(out), Carry::packet())
-    }
-
-    pub(super) fn receiver(&mut self) -> Option<receiver::From> {
-        self.input.take().map(receiver::From::Tty)
     }
 
     /// Waits, up to a second, until the reader has emptied the buffers; not when there is none.
@@ -130,9 +120,7 @@ impl Pty {
             tokio::time::sleep(LOOK).await;
         }
     }
-}
 
-impl Pty {
     /// Whether nothing is left to read, as far as the kernel shows it.
     ///
     /// `FIONREAD` alone says 0 while bytes wait to be moved to where it counts them, on a loaded
@@ -187,18 +175,23 @@ fn is_stale(path: &Path, device: &Path) -> bool {
 mod tests {
     use super::*;
 
-    async fn open(path: &Path) -> Result<Pty, LinkError> {
+    fn open(path: &Path) -> Result<Link, LinkError> {
         let address = Address::Pty { path: Some(path.to_owned()) };
-        Pty::open(&address, Some(path)).await
+        super::open(&address, Some(path))
+    }
+
+    /// The slave that `path` links to.
+    fn device(path: &Path) -> bool {
+        fs::read_link(path).is_ok_and(|target| target.starts_with("/dev/pts") && target.exists())
     }
 
     #[tokio::test]
     async fn the_symbolic_link_lives_as_long_as_the_pty() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("imu");
-        let pty = open(&path).await.unwrap();
-        assert_eq!(fs::read_link(&path).unwrap(), pty.device);
-        assert_eq!(pty.path(), path);
+        let pty = open(&path).unwrap();
+        assert!(device(&path));
+        assert_eq!(Path::new(pty.name()), path);
         pty.close().await;
         assert!(fs::symlink_metadata(&path).is_err());
     }
@@ -208,8 +201,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("imu");
         std::os::unix::fs::symlink("/dev/pts/999999", &path).unwrap();
-        let pty = open(&path).await.unwrap();
-        assert_eq!(fs::read_link(&path).unwrap(), pty.device);
+        let _pty = open(&path).unwrap();
+        assert!(device(&path));
     }
 
     #[tokio::test]
@@ -217,23 +210,23 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("imu");
         fs::write(&path, "precious").unwrap();
-        let error = open(&path).await.err().unwrap().to_string();
+        let error = open(&path).err().unwrap().to_string();
         assert!(error.contains("already exists") && error.contains("imu"), "{error}");
         assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
 
         let taken = folder.path().join("taken");
-        let first = open(&taken).await.unwrap();
-        let error = open(&taken).await.err().unwrap().to_string();
+        let first = open(&taken).unwrap();
+        let error = open(&taken).err().unwrap().to_string();
         assert!(error.contains("and links to /dev/pts/"), "{error}");
         drop(first);
-        open(&taken).await.unwrap();
+        open(&taken).unwrap();
     }
 
     #[tokio::test]
     async fn a_link_that_somebody_has_replaced_is_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("imu");
-        let pty = open(&path).await.unwrap();
+        let pty = open(&path).unwrap();
         fs::remove_file(&path).unwrap();
         std::os::unix::fs::symlink("/dev/null", &path).unwrap();
         drop(pty);

@@ -2,20 +2,23 @@
 
 use std::io;
 
-use rustix::buffer::spare_capacity;
+use bytes::{BufMut, BytesMut};
+use tokio::io::{AsyncRead, AsyncReadExt};
+use tokio::sync::mpsc;
 
-use super::{memory, tcp, tty, udp};
+use super::{serial, tcp, tty, udp};
 use crate::os::Readable;
 
 /// The receiving side of a link, for one task.
-pub struct Receiver(pub(super) From);
+pub struct Receiver(pub(super) Source);
 
 /// Where the bytes come from, one a kind of link that answers.
-pub(super) enum From {
-    Tty(tty::In),
+pub(super) enum Source {
+    Pty(Readable),
+    Serial(serial::In),
     Tcp(tcp::In),
     Udp(udp::In),
-    Memory(memory::In),
+    Memory(mpsc::UnboundedReceiver<Vec<u8>>),
 }
 
 impl Receiver {
@@ -23,25 +26,29 @@ impl Receiver {
     ///
     /// A read may hold several packets, or a part of one; over UDP it is one datagram. On a link
     /// that waits for its peer, this waits for it too. Cancelling it loses nothing.
-    pub async fn recv(&mut self, buffer: &mut Vec<u8>) -> io::Result<usize> {
+    pub async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
         match &mut self.0 {
-            From::Tty(input) => input.recv(buffer).await,
-            From::Tcp(input) => input.recv(buffer).await,
-            From::Udp(input) => input.recv(buffer).await,
-            From::Memory(input) => input.recv(buffer).await,
+            Source::Pty(master) => read(master, buffer).await,
+            Source::Serial(port) => port.recv(buffer).await,
+            Source::Tcp(input) => input.recv(buffer).await,
+            Source::Udp(input) => input.recv(buffer).await,
+            Source::Memory(answers) => {
+                let bytes = answers.recv().await.unwrap_or_default();
+                buffer.extend_from_slice(&bytes);
+                Ok(bytes.len())
+            }
         }
     }
 }
 
-/// Room made for one read.
+/// The most that one read takes.
 const ROOM: usize = 4096;
 
 /// Reads from a stream when it has something; 0 when it has ended or broken.
-pub(super) async fn read_when_ready(stream: &Readable, buffer: &mut Vec<u8>) -> io::Result<usize> {
-    buffer.reserve(ROOM);
+pub(super) async fn read(stream: &mut (impl AsyncRead + Unpin), buffer: &mut BytesMut) -> io::Result<usize> {
     loop {
-        let read = stream.read(|fd| rustix::io::read(fd, spare_capacity(buffer)).map_err(tty::lost));
-        match read.await {
+        buffer.reserve(ROOM);
+        match stream.read_buf(&mut (&mut *buffer).limit(ROOM)).await.map_err(tty::lost) {
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) if has_left(error.kind()) => return Ok(0),
             answer => return answer,

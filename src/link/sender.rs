@@ -6,8 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-use super::{file, memory, stdout, tcp, tty, udp};
-
 /// The longest packet a link takes, in bytes.
 pub const MAX_PACKET: usize = 65_536;
 
@@ -28,37 +26,22 @@ pub enum Sent {
 /// A packet is never cut: where the system takes only a part of it, the rest is kept here and goes
 /// out before the next packet. Call [`finish`](Self::finish) at the end.
 pub struct Sender {
-    to: To,
+    to: Box<dyn Out>,
     carry: Carry,
 }
 
-/// Where the bytes go, one a kind of link.
-pub(super) enum To {
-    Tty(tty::Out),
-    Tcp(tcp::Out),
-    Udp(udp::Out),
-    File(file::Out),
-    Stdout(stdout::Out),
-    Memory(memory::Out),
-}
+/// Where the bytes of one kind of link go.
+pub(super) trait Out: Send {
+    /// One call to the system, which never waits: how many bytes it took, or `WouldBlock`.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
 
-/// Does the same with every kind of link.
-macro_rules! each {
-    ($to:expr, $out:ident => $do:expr) => {
-        match $to {
-            To::Tty($out) => $do,
-            To::Tcp($out) => $do,
-            To::Udp($out) => $do,
-            To::File($out) => $do,
-            To::Stdout($out) => $do,
-            To::Memory($out) => $do,
-        }
-    };
+    /// What to wait on until it takes more, where there is such a thing now.
+    fn poll_fd(&self) -> Option<BorrowedFd<'_>>;
 }
 
 impl Sender {
-    pub(super) fn new(to: To, carry: Carry) -> Self {
-        Self { to, carry }
+    pub(super) fn new(to: impl Out + 'static, carry: Carry) -> Self {
+        Self { to: Box::new(to), carry }
     }
 
     /// Sends a packet if the link takes it now; never waits.
@@ -90,9 +73,9 @@ impl Sender {
     /// Sends what is kept of earlier packets as far as the link takes it now; never waits.
     ///
     /// `Done` when nothing is kept any more, `Full` when something is.
-    pub fn flush_carry(&mut self) -> Sent {
+    fn flush_carry(&mut self) -> Sent {
         while !self.carry.kept().is_empty() {
-            match write(&mut self.to, self.carry.kept()) {
+            match write(&mut *self.to, self.carry.kept()) {
                 Ok(count) => self.carry.forget(count),
                 Err(full) => return self.refused(full),
             }
@@ -125,16 +108,6 @@ impl Sender {
         self.carry.kept().len()
     }
 
-    /// Bytes that are on their way to the other side, where the system says so; those kept here
-    /// included.
-    ///
-    /// On a pty: what its reader has not read, of which the kernel shows at most about 4 kB of the
-    /// up to 20 kB it holds. On a socket: what was not acknowledged.
-    pub fn queued(&self) -> Option<usize> {
-        let beyond = each!(&self.to, out => out.queued())?;
-        Some(beyond + self.kept())
-    }
-
     fn take(&mut self, packet: &[u8], gather: bool) -> Sent {
         if packet.len() > MAX_PACKET {
             return Sent::Gone(io::ErrorKind::InvalidInput);
@@ -153,7 +126,7 @@ impl Sender {
             self.carry.keep(packet);
             return Sent::Done;
         }
-        match write(&mut self.to, packet) {
+        match write(&mut *self.to, packet) {
             Ok(count) if count < packet.len() => {
                 self.carry.keep(&packet[count..]);
                 // What is in the way may have been a limit on one call.
@@ -179,7 +152,7 @@ impl Sender {
     ///
     /// Woken early or for nothing, the caller only asks again.
     fn wait(&self) -> i64 {
-        let (slice_ms, woken) = match each!(&self.to, out => out.poll_fd()) {
+        let (slice_ms, woken) = match self.to.poll_fd() {
             Some(fd) => (SLICE_MS, poll_writable(fd, &ms(SLICE_MS))),
             None => (BLIND_SLICE_MS, poll(&mut [], Some(&ms(BLIND_SLICE_MS)))),
         };
@@ -213,9 +186,9 @@ fn poll_writable(fd: BorrowedFd<'_>, slice: &Timespec) -> rustix::io::Result<usi
 }
 
 /// One write: how many bytes were taken, or why none was.
-fn write(to: &mut To, bytes: &[u8]) -> Result<usize, Sent> {
+fn write(to: &mut dyn Out, bytes: &[u8]) -> Result<usize, Sent> {
     loop {
-        match each!(&mut *to, out => out.write(bytes)) {
+        match to.write(bytes) {
             Ok(0) if !bytes.is_empty() => return Err(Sent::Full),
             Ok(count) => return Ok(count),
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -322,7 +295,6 @@ mod tests {
         assert_eq!(far.take(), b"abcdefgABC");
         assert_eq!(sender.send(b"123"), Sent::Done);
         assert_eq!(far.take(), b"DEFG123");
-        assert_eq!(sender.queued(), Some(0));
     }
 
     #[test]

@@ -8,16 +8,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use bytes::BytesMut;
 use rustix::fs::{FlockOperation, Mode, OFlags, flock};
 use rustix::io::Errno;
-use rustix::termios::{ControlModes, QueueSelector, ioctl_tiocexcl, ioctl_tiocnxcl, tcflush, tcgetattr};
+use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
+use tokio::sync::Mutex;
+use tokio_serial::{ClearBuffer, ErrorKind, SerialPort, SerialPortBuilderExt, SerialStream};
 
 use super::address::{Address, DEFAULT_BAUD, Problem};
 use super::holders::holders;
 use super::ports::ports;
+use super::receiver::{Receiver, Source, read};
 use super::scheme::{self, Scheme};
-use super::sender::{Carry, Sender, To};
-use super::{LinkError, receiver, tty};
+use super::sender::{Carry, Sender};
+use super::tty::Terminal;
+use super::{Kind, Link, LinkError};
 use crate::os;
 
 /// Its line in the table of links.
@@ -56,95 +61,95 @@ const SPEEDS: std::ops::RangeInclusive<u32> = 50..=20_000_000;
 /// An open serial port.
 pub(super) struct Serial {
     port: Arc<OwnedFd>,
-    path: PathBuf,
-    notices: Vec<String>,
-    input: Option<tty::In>,
+    /// Dropped, it gives the port back: it lives as long as the link, whatever its receiver does.
+    _claim: Arc<Mutex<SerialStream>>,
+}
+
+/// Opens a port twice: once for us, to ask and to write without an executor, and once as
+/// [`SerialStream`], which claims and configures it and receives.
+///
+/// Neither is closed before the other is open: the modem lines rise once, which may reset a board.
+pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, LinkError> {
+    let refused = |errno| refusal(address, path, baud, errno);
+    let port = Arc::new(ask(path).map_err(refused)?);
+    let builder = tokio_serial::new(path.to_string_lossy(), baud);
+    let stream = builder.open_native_async().map_err(|error| match error.kind() {
+        // All that it says of a port that another has claimed since we asked.
+        ErrorKind::NoDevice => refused(Errno::BUSY),
+        _ => match set_speed(&port, baud) {
+            Err(errno) => refused(errno),
+            Ok(()) => LinkError::Io {
+                link: address.to_string(),
+                doing: format!("set up {}", path.display()),
+                source: error.into(),
+            },
+        },
+    })?;
+    // Forgets what came before; a port that cannot has nothing to forget.
+    let _ = stream.clear(ClearBuffer::All);
+    let notices = notices(path, baud, &port, &stream);
+    let sender = Sender::new(Terminal(Arc::clone(&port)), Carry::packet());
+    let stream = Arc::new(Mutex::new(stream));
+    let receiver = Receiver(Source::Serial(In(Arc::clone(&stream))));
+    let serial = Serial { port, _claim: stream };
+    Ok(Link { notices, ..Link::new(path.display(), Kind::Serial(serial), sender, Some(receiver)) })
+}
+
+/// Opens a port and asks for what [`SerialStream`] would not tell: why it cannot be opened, whether
+/// it is a terminal, whether another has it.
+///
+/// That has to come first: in the hands of root, who passes `TIOCEXCL`, a failed attempt of
+/// [`SerialStream`] takes away the claim of the one who holds the port.
+fn ask(path: &Path) -> Result<OwnedFd, Errno> {
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    let port = rustix::fs::open(path, flags, Mode::empty())?;
+    tcgetattr(&port)?;
+    match flock(&port, FlockOperation::NonBlockingLockExclusive) {
+        Err(Errno::WOULDBLOCK) => Err(Errno::BUSY),
+        _ => {
+            let _ = flock(&port, FlockOperation::Unlock);
+            Ok(port)
+        }
+    }
+}
+
+/// What would be in the way of a speed.
+fn set_speed(port: &OwnedFd, baud: u32) -> Result<(), Errno> {
+    let mut modes = tcgetattr(port)?;
+    modes.set_speed(baud)?;
+    tcsetattr(port, OptionalActions::Now, &modes)
+}
+
+/// What the user should know of how the port was set up.
+fn notices(path: &Path, baud: u32, port: &OwnedFd, stream: &SerialStream) -> Vec<String> {
+    let mut notices = Vec::new();
+    let device = path.display();
+    if let Ok(actual) = stream.baud_rate()
+        && actual.abs_diff(baud) > baud / 50
+    {
+        notices.push(format!("{device} runs at {actual} baud instead of {baud}"));
+    }
+    match os::set_low_latency(port) {
+        Ok(()) => {}
+        // Most drivers have no such setting because they never hold anything back.
+        Err(error) if error.kind() == io::ErrorKind::Unsupported => {}
+        Err(error) => notices.push(format!(
+            "low latency could not be set on {device}: {error}; answers may come up to 16 ms late"
+        )),
+    }
+    if let Some((timer, milliseconds)) = latency_timer(path)
+        && milliseconds > 1
+    {
+        notices.push(format!(
+            "the adapter of {device} holds back what it receives for up to {milliseconds} ms; \
+             `echo 1 | sudo tee {}` makes that 1 ms",
+            timer.display()
+        ));
+    }
+    notices
 }
 
 impl Serial {
-    pub(super) async fn open(address: &Address, path: &Path, baud: u32) -> Result<Self, LinkError> {
-        let refused = |errno| refusal(address, path, baud, errno);
-        let port = take(path).map_err(refused)?;
-        // Whatever fails from here on, dropping this gives the port back.
-        let mut serial =
-            Self { port: Arc::new(port), path: path.to_owned(), notices: Vec::new(), input: None };
-        serial.configure(baud).map_err(refused)?;
-        serial.hurry();
-        let input = tty::In::new(Arc::clone(&serial.port)).map_err(|source| LinkError::Io {
-            link: address.to_string(),
-            doing: format!("wait for {}", path.display()),
-            source,
-        })?;
-        serial.input = Some(input);
-        Ok(serial)
-    }
-
-    /// Sets the speed and the shape of a byte, and forgets what came before.
-    fn configure(&mut self, baud: u32) -> Result<(), Errno> {
-        tty::make_raw(&self.port, |modes| {
-            modes.control_modes |= ControlModes::CREAD | ControlModes::CLOCAL | ControlModes::CS8;
-            modes.control_modes -= ControlModes::CSTOPB | ControlModes::PARENB | ControlModes::CRTSCTS;
-            modes.set_speed(baud)
-        })?;
-        let actual = tcgetattr(&self.port)?.output_speed();
-        if actual.abs_diff(baud) > baud / 50 {
-            self.notices.push(format!("{} runs at {actual} baud instead of {baud}", self.path.display()));
-        }
-        let _ = tcflush(&self.port, QueueSelector::IOFlush);
-        Ok(())
-    }
-
-    /// Asks the driver not to hold back what it receives, and says what it answers.
-    fn hurry(&mut self) {
-        let path = self.path.display();
-        match os::set_low_latency(&self.port) {
-            Ok(()) => {}
-            // Most drivers have no such setting because they never hold anything back.
-            Err(error) if error.kind() == io::ErrorKind::Unsupported => {}
-            Err(error) => self.notices.push(format!(
-                "low latency could not be set on {path}: {error}; answers may come up to 16 ms late"
-            )),
-        }
-        if let Some((timer, milliseconds)) = latency_timer(&self.path)
-            && milliseconds > 1
-        {
-            self.notices.push(format!(
-                "the adapter of {path} holds back what it receives for up to {milliseconds} ms; \
-                 `echo 1 | sudo tee {}` makes that 1 ms",
-                timer.display()
-            ));
-        }
-    }
-
-    pub(super) fn name(&self) -> String {
-        super::address::shown(&self.path)
-    }
-
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    pub(super) fn notices(&self) -> &[String] {
-        &self.notices
-    }
-
-    pub(super) fn present(&self) -> bool {
-        true
-    }
-
-    pub(super) async fn peer(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-
-    pub(super) fn sender(&mut self) -> Sender {
-        let out = tty::Out { terminal: Arc::clone(&self.port), far: None };
-        Sender::new(To::Tty(out), Carry::packet())
-    }
-
-    pub(super) fn receiver(&mut self) -> Option<receiver::From> {
-        self.input.take().map(receiver::From::Tty)
-    }
-
     /// Waits, up to a second, until the port has sent what it holds, and drops the rest: the
     /// kernel itself would wait for thirty.
     pub(super) async fn close(self) {
@@ -158,24 +163,13 @@ impl Serial {
     }
 }
 
-impl Drop for Serial {
-    fn drop(&mut self) {
-        let _ = ioctl_tiocnxcl(&self.port);
-    }
-}
+/// The receiving side: nobody else ever locks it.
+pub(super) struct In(Arc<Mutex<SerialStream>>);
 
-/// Opens a port and claims it, so that no other program's bytes mix with ours.
-fn take(path: &Path) -> Result<OwnedFd, Errno> {
-    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-    let port = rustix::fs::open(path, flags, Mode::empty())?;
-    tcgetattr(&port)?;
-    // The lock comes first: a port that another holds must not lose that one's own claim.
-    // Other refusals are no reason to stop: not every file system has locks.
-    if flock(&port, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK) {
-        return Err(Errno::BUSY);
+impl In {
+    pub(super) async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
+        read(&mut *self.0.lock().await, buffer).await
     }
-    ioctl_tiocexcl(&port)?;
-    Ok(port)
 }
 
 /// What the system's answer means to the user.
@@ -237,14 +231,13 @@ mod tests {
         format!("serial:{path}").parse().unwrap()
     }
 
-    async fn refused(path: &str) -> String {
-        let error = Serial::open(&address(path), Path::new(path), 57_600).await;
-        error.err().expect("it opened").to_string()
+    fn refused(path: &str) -> String {
+        open(&address(path), Path::new(path), 57_600).err().expect("it opened").to_string()
     }
 
-    #[tokio::test]
-    async fn a_missing_port_is_named_with_those_present() {
-        let text = refused("/dev/ttyNONE7").await;
+    #[test]
+    fn a_missing_port_is_named_with_those_present() {
+        let text = refused("/dev/ttyNONE7");
         assert!(text.contains("`/dev/ttyNONE7`"), "{text}");
         assert!(text.contains("there is no port /dev/ttyNONE7"), "{text}");
         assert!(text.contains("present"), "{text}");
@@ -256,14 +249,14 @@ mod tests {
         assert!(listed.to_string().ends_with("present: /dev/ttyACM0 (PX4)"));
     }
 
-    #[tokio::test]
-    async fn a_path_that_is_no_port_says_how_to_write_a_file() {
+    #[test]
+    fn a_path_that_is_no_port_says_how_to_write_a_file() {
         let file = tempfile::NamedTempFile::new().unwrap();
         let path = file.path().to_str().unwrap();
-        let text = refused(path).await;
+        let text = refused(path);
         assert!(text.contains("not a serial port"), "{text}");
         assert!(text.contains(&format!("file:{path}")), "{text}");
-        assert!(refused("/dev").await.contains("not a serial port"));
+        assert!(refused("/dev").contains("not a serial port"));
     }
 
     #[test]

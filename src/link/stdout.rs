@@ -12,8 +12,8 @@ use rustix::fs::{FileType, fstat};
 
 use super::address::{Address, Problem};
 use super::scheme::Scheme;
-use super::sender::{Carry, Sender, To};
-use super::{LinkError, receiver};
+use super::sender::{Carry, Out, Sender};
+use super::{Kind, Link, LinkError};
 
 /// Its line in the table of links.
 pub(super) const SCHEME: Scheme = Scheme { name: "-", spelling: "-", about: "standard output", parse };
@@ -28,84 +28,38 @@ fn parse(rest: Option<&str>) -> Result<Address, Problem> {
 /// What a pipe that takes anything takes without blocking (`PIPE_BUF`).
 const PIECE: usize = 4096;
 
-/// Standard output, open.
-pub(super) struct Stdout {
-    file: Option<File>,
-    regular: bool,
+pub(super) fn open(address: &Address) -> Result<Link, LinkError> {
+    let sender = sender(io::stdout()).map_err(|source| LinkError::Io {
+        link: address.to_string(),
+        doing: "write to standard output".to_owned(),
+        source,
+    })?;
+    Ok(Link::new("-", Kind::Plain, sender, None))
 }
 
-impl Stdout {
-    pub(super) async fn open(address: &Address) -> Result<Self, LinkError> {
-        Self::of(io::stdout()).map_err(|source| LinkError::Io {
-            link: address.to_string(),
-            doing: "write to standard output".to_owned(),
-            source,
-        })
-    }
-
-    pub(super) fn of(output: impl AsFd) -> io::Result<Self> {
-        let file = output.as_fd().try_clone_to_owned()?;
-        let kind = FileType::from_raw_mode(fstat(&file)?.st_mode);
-        Ok(Self { file: Some(file.into()), regular: kind == FileType::RegularFile })
-    }
-
-    pub(super) fn name(&self) -> String {
-        "-".to_owned()
-    }
-
-    pub(super) fn present(&self) -> bool {
-        true
-    }
-
-    pub(super) async fn peer(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-
-    pub(super) fn sender(&mut self) -> Sender {
-        let carry = match self.regular {
-            true => Carry::batch(),
-            false => Carry::lively_batch(),
-        };
-        let file = self.file.take();
-        Sender::new(To::Stdout(Out { file, regular: self.regular }), carry)
-    }
-
-    pub(super) fn receiver(&mut self) -> Option<receiver::From> {
-        None
-    }
-
-    /// Nothing to wait for: the sender has written what it held.
-    pub(super) async fn close(self) {}
+fn sender(output: impl AsFd) -> io::Result<Sender> {
+    let file = File::from(output.as_fd().try_clone_to_owned()?);
+    Ok(match FileType::from_raw_mode(fstat(&file)?.st_mode) {
+        FileType::RegularFile => Sender::new(file, Carry::batch()),
+        _ => Sender::new(Pipe(file), Carry::lively_batch()),
+    })
 }
 
-/// The sending side.
-pub(super) struct Out {
-    file: Option<File>,
-    regular: bool,
-}
+/// A pipe, or whatever else may block.
+struct Pipe(File);
 
-impl Out {
-    pub(super) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let Some(file) = &mut self.file else {
-            return Err(io::ErrorKind::NotConnected.into());
-        };
-        if self.regular {
-            return file.write(bytes);
-        }
+impl Out for Pipe {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let at_once = Timespec::default();
-        let mut asked = [PollFd::new(file, PollFlags::OUT)];
+        let mut asked = [PollFd::new(&self.0, PollFlags::OUT)];
         match poll(&mut asked, Some(&at_once))? {
             0 => Err(io::ErrorKind::WouldBlock.into()),
-            _ => file.write(&bytes[..bytes.len().min(PIECE)]),
+            _ => Write::write(&mut self.0, &bytes[..bytes.len().min(PIECE)]),
         }
     }
 
-    pub(super) fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
-        self.file.as_ref().map(AsFd::as_fd)
-    }
-
-    pub(super) fn queued(&self) -> Option<usize> {
-        None
+    fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
+        Some(self.0.as_fd())
     }
 }
 
@@ -119,7 +73,7 @@ mod tests {
 
     fn pipe() -> (Sender, io::PipeReader) {
         let (reader, writer) = io::pipe().unwrap();
-        (Stdout::of(writer).unwrap().sender(), reader)
+        (sender(writer).unwrap(), reader)
     }
 
     #[test]

@@ -1,27 +1,28 @@
 //! A TCP connection to one peer, waited for (`tcpin`) or made (`tcpout`).
 
 use std::io::{self, Read, Write};
-use std::net::{Shutdown, TcpStream};
+use std::net::{Shutdown, SocketAddr, TcpStream};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::Arc;
 use std::time::Duration;
 
+use bytes::BytesMut;
 use tokio::net::TcpListener;
 use tokio::sync::{Mutex, OnceCell};
 
 use super::address::{Address, Place, Problem};
 use super::net::{cannot_listen, cannot_reach, resolve, resolve_one};
-use super::receiver::read_when_ready;
+use super::receiver::{Receiver, Source, read};
 use super::scheme::{self, Scheme};
-use super::sender::{Carry, Sender, To};
-use super::{LinkError, receiver};
-use crate::os::{self, Readable};
+use super::sender::{Carry, Out, Sender};
+use super::{Kind, Link, LinkError};
+use crate::os;
 
 /// The listening line in the table of links.
 pub(super) const SCHEME_IN: Scheme = Scheme {
     name: "tcpin",
     spelling: "tcpin:[ADDR:]PORT",
-    about: "waits for one TCP connection; on this machine alone where no ADDR is given",
+    about: "waits for one TCP peer and turns others away; on this machine alone where no ADDR is given",
     parse: parse_in,
 };
 
@@ -45,61 +46,49 @@ fn parse_out(rest: Option<&str>) -> Result<Address, Problem> {
 const CONNECT: Duration = Duration::from_secs(10);
 
 /// An open TCP link.
-pub(super) struct Tcp {
-    name: String,
-    way: Arc<Way>,
-}
+pub(super) struct Tcp(Arc<Way>);
 
 /// The connection, once there is one.
-pub(super) struct Way {
+struct Way {
     listener: Mutex<Option<TcpListener>>,
     stream: OnceCell<TcpStream>,
 }
 
+pub(super) async fn listen(address: &Address, place: &Place) -> Result<Link, LinkError> {
+    let local = resolve_one(address, place).await?;
+    let refused = |source| cannot_listen(address, place, source);
+    let listener = TcpListener::bind(local).await.map_err(refused)?;
+    let name = listener.local_addr().map_err(refused)?;
+    Ok(link(name, Way { listener: Mutex::new(Some(listener)), stream: OnceCell::new() }))
+}
+
+pub(super) async fn connect(address: &Address, place: &Place) -> Result<Link, LinkError> {
+    let refused = |source| cannot_reach(address, place, source);
+    let addresses = resolve(address, place).await?;
+    let connect = tokio::net::TcpStream::connect(addresses.as_slice());
+    let stream = match tokio::time::timeout(CONNECT, connect).await {
+        Ok(answer) => answer.map_err(refused)?,
+        Err(_) => return Err(refused(io::ErrorKind::TimedOut.into())),
+    };
+    let name = stream.peer_addr().map_err(refused)?;
+    let stream = OnceCell::new_with(Some(plain(stream).map_err(refused)?));
+    Ok(link(name, Way { listener: Mutex::new(None), stream }))
+}
+
+fn link(name: SocketAddr, way: Way) -> Link {
+    let way = Arc::new(way);
+    let sender = Sender::new(Segments(Arc::clone(&way)), Carry::packet());
+    let receiver = Receiver(Source::Tcp(In { way: Arc::clone(&way), stream: None }));
+    Link::new(name, Kind::Tcp(Tcp(way)), sender, Some(receiver))
+}
+
 impl Tcp {
-    pub(super) async fn listen(address: &Address, place: &Place) -> Result<Self, LinkError> {
-        let local = resolve_one(address, place).await?;
-        let refused = |source| cannot_listen(address, place, source);
-        let listener = TcpListener::bind(local).await.map_err(refused)?;
-        let name = listener.local_addr().map_err(refused)?.to_string();
-        let way = Arc::new(Way { listener: Mutex::new(Some(listener)), stream: OnceCell::new() });
-        Ok(Self { name, way })
-    }
-
-    pub(super) async fn connect(address: &Address, place: &Place) -> Result<Self, LinkError> {
-        let refused = |source| cannot_reach(address, place, source);
-        let addresses = resolve(address, place).await?;
-        let connect = tokio::net::TcpStream::connect(addresses.as_slice());
-        let stream = match tokio::time::timeout(CONNECT, connect).await {
-            Ok(answer) => answer.map_err(refused)?,
-            Err(_) => return Err(refused(io::ErrorKind::TimedOut.into())),
-        };
-        let name = stream.peer_addr().map_err(refused)?.to_string();
-        let way = Arc::new(Way {
-            listener: Mutex::new(None),
-            stream: OnceCell::new_with(Some(plain(stream).map_err(refused)?)),
-        });
-        Ok(Self { name, way })
-    }
-
-    pub(super) fn name(&self) -> String {
-        self.name.clone()
-    }
-
     pub(super) fn present(&self) -> bool {
-        self.way.stream.initialized()
+        self.0.stream.initialized()
     }
 
-    pub(super) async fn peer(&mut self) -> io::Result<()> {
-        self.way.connected().await.map(drop)
-    }
-
-    pub(super) fn sender(&mut self) -> Sender {
-        Sender::new(To::Tcp(Out(Arc::clone(&self.way))), Carry::packet())
-    }
-
-    pub(super) fn receiver(&mut self) -> Option<receiver::From> {
-        Some(receiver::From::Tcp(In { way: Arc::clone(&self.way), socket: None }))
+    pub(super) async fn peer(&self) -> io::Result<()> {
+        self.0.connected().await.map(drop)
     }
 
     /// Says that nothing more comes, and waits up to a second until the peer has it all.
@@ -107,7 +96,7 @@ impl Tcp {
     /// What the peer still sends is read and dropped: closing with bytes unread would reset the
     /// connection and could take our last packets with it.
     pub(super) async fn close(self) {
-        let Some(mut stream) = self.way.stream.get() else {
+        let Some(mut stream) = self.0.stream.get() else {
             return;
         };
         let _ = stream.shutdown(Shutdown::Write);
@@ -159,39 +148,36 @@ fn plain(stream: tokio::net::TcpStream) -> io::Result<TcpStream> {
 }
 
 /// The sending side.
-pub(super) struct Out(Arc<Way>);
+struct Segments(Arc<Way>);
 
-impl Out {
-    pub(super) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+impl Out for Segments {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.0.stream.get() {
             Some(mut stream) => stream.write(bytes),
             None => Err(io::ErrorKind::WouldBlock.into()),
         }
     }
 
-    pub(super) fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
+    fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
         self.0.stream.get().map(AsFd::as_fd)
-    }
-
-    pub(super) fn queued(&self) -> Option<usize> {
-        os::unsent(self.0.stream.get()?).ok()
     }
 }
 
 /// The receiving side.
 pub(super) struct In {
     way: Arc<Way>,
-    socket: Option<Readable>,
+    /// The same connection, for waiting.
+    stream: Option<tokio::net::TcpStream>,
 }
 
 impl In {
-    pub(super) async fn recv(&mut self, buffer: &mut Vec<u8>) -> io::Result<usize> {
-        if self.socket.is_none() {
-            let stream = self.way.connected().await?.try_clone()?;
-            self.socket = Some(Readable::new(Arc::new(stream.into()))?);
+    pub(super) async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
+        if self.stream.is_none() {
+            let again = self.way.connected().await?.try_clone()?;
+            self.stream = Some(tokio::net::TcpStream::from_std(again)?);
         }
-        match &self.socket {
-            Some(socket) => read_when_ready(socket, buffer).await,
+        match &mut self.stream {
+            Some(stream) => read(stream, buffer).await,
             None => Ok(0),
         }
     }

@@ -7,14 +7,15 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::Arc;
 
+use bytes::BytesMut;
 use tokio::sync::OnceCell;
 
 use super::address::{Address, Place, Problem};
 use super::net::{cannot_listen, cannot_reach, resolve_one};
+use super::receiver::{Receiver, Source};
 use super::scheme::{self, Scheme};
-use super::sender::{Carry, Sender, To};
-use super::{LinkError, receiver};
-use crate::os;
+use super::sender::{Carry, Out, Sender};
+use super::{Kind, Link, LinkError};
 
 /// The listening line in the table of links.
 pub(super) const SCHEME_IN: Scheme = Scheme {
@@ -44,13 +45,10 @@ fn parse_out(rest: Option<&str>) -> Result<Address, Problem> {
 const LONGEST: usize = 65_536;
 
 /// An open UDP link.
-pub(super) struct Udp {
-    name: String,
-    way: Arc<Way>,
-}
+pub(super) struct Udp(Arc<Way>);
 
 /// The socket, and where it sends once that is known.
-pub(super) struct Way {
+struct Way {
     /// For the pacing thread, which knows nothing of the executor.
     plain: UdpSocket,
     /// The same socket, for waiting.
@@ -58,66 +56,50 @@ pub(super) struct Way {
     peer: OnceCell<SocketAddr>,
 }
 
+pub(super) async fn listen(address: &Address, place: &Place) -> Result<Link, LinkError> {
+    let local = resolve_one(address, place).await?;
+    let refused = |source| cannot_listen(address, place, source);
+    let plain = UdpSocket::bind(local).map_err(refused)?;
+    let name = plain.local_addr().map_err(refused)?;
+    link(name, plain, OnceCell::new()).map_err(refused)
+}
+
+pub(super) async fn aim(address: &Address, place: &Place) -> Result<Link, LinkError> {
+    let far = resolve_one(address, place).await?;
+    let refused = |source| cannot_reach(address, place, source);
+    let any = match far {
+        SocketAddr::V4(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
+        SocketAddr::V6(_) => IpAddr::V6(Ipv6Addr::UNSPECIFIED),
+    };
+    let local = match far.ip().is_loopback() {
+        true => far.ip(),
+        false => any,
+    };
+    let plain = UdpSocket::bind((local, 0)).map_err(refused)?;
+    plain.set_broadcast(true).map_err(refused)?;
+    link(far, plain, OnceCell::new_with(Some(far))).map_err(refused)
+}
+
+fn link(name: SocketAddr, plain: UdpSocket, peer: OnceCell<SocketAddr>) -> io::Result<Link> {
+    plain.set_nonblocking(true)?;
+    let socket = tokio::net::UdpSocket::from_std(plain.try_clone()?)?;
+    let way = Arc::new(Way { plain, socket, peer });
+    let sender = Sender::new(Datagrams(Arc::clone(&way)), Carry::none());
+    let receiver = Receiver(Source::Udp(In(Arc::clone(&way))));
+    Ok(Link::new(name, Kind::Udp(Udp(way)), sender, Some(receiver)))
+}
+
 impl Udp {
-    pub(super) async fn listen(address: &Address, place: &Place) -> Result<Self, LinkError> {
-        let local = resolve_one(address, place).await?;
-        let refused = |source| cannot_listen(address, place, source);
-        let plain = UdpSocket::bind(local).map_err(refused)?;
-        let name = plain.local_addr().map_err(refused)?.to_string();
-        let way = Way::new(plain, OnceCell::new()).map_err(refused)?;
-        Ok(Self { name, way })
-    }
-
-    pub(super) async fn aim(address: &Address, place: &Place) -> Result<Self, LinkError> {
-        let far = resolve_one(address, place).await?;
-        let refused = |source| cannot_reach(address, place, source);
-        let any = match far {
-            SocketAddr::V4(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
-            SocketAddr::V6(_) => IpAddr::V6(Ipv6Addr::UNSPECIFIED),
-        };
-        let local = match far.ip().is_loopback() {
-            true => far.ip(),
-            false => any,
-        };
-        let plain = UdpSocket::bind((local, 0)).map_err(refused)?;
-        plain.set_broadcast(true).map_err(refused)?;
-        let name = far.to_string();
-        let way = Way::new(plain, OnceCell::new_with(Some(far))).map_err(refused)?;
-        Ok(Self { name, way })
-    }
-
-    pub(super) fn name(&self) -> String {
-        self.name.clone()
-    }
-
     pub(super) fn present(&self) -> bool {
-        self.way.peer.initialized()
+        self.0.peer.initialized()
     }
 
-    pub(super) async fn peer(&mut self) -> io::Result<()> {
-        self.way.known().await.map(drop)
+    pub(super) async fn peer(&self) -> io::Result<()> {
+        self.0.known().await.map(drop)
     }
-
-    pub(super) fn sender(&mut self) -> Sender {
-        Sender::new(To::Udp(Out(Arc::clone(&self.way))), Carry::none())
-    }
-
-    pub(super) fn receiver(&mut self) -> Option<receiver::From> {
-        let way = Arc::clone(&self.way);
-        Some(receiver::From::Udp(In(way)))
-    }
-
-    /// Nothing to wait for: the kernel sends what it has taken.
-    pub(super) async fn close(self) {}
 }
 
 impl Way {
-    fn new(plain: UdpSocket, peer: OnceCell<SocketAddr>) -> io::Result<Arc<Self>> {
-        plain.set_nonblocking(true)?;
-        let socket = tokio::net::UdpSocket::from_std(plain.try_clone()?)?;
-        Ok(Arc::new(Self { plain, socket, peer }))
-    }
-
     /// Where packets go: who sends first, where nobody was named. Cancelling it loses nothing, and
     /// that first datagram is still there to be received.
     async fn known(&self) -> io::Result<SocketAddr> {
@@ -130,23 +112,19 @@ impl Way {
 }
 
 /// The sending side.
-pub(super) struct Out(Arc<Way>);
+struct Datagrams(Arc<Way>);
 
-impl Out {
+impl Out for Datagrams {
     /// Sends `bytes` as one datagram: all of them or none.
-    pub(super) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.0.peer.get() {
             Some(peer) => self.0.plain.send_to(bytes, peer),
             None => Err(io::ErrorKind::WouldBlock.into()),
         }
     }
 
-    pub(super) fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
+    fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
         self.0.peer.get().map(|_| self.0.plain.as_fd())
-    }
-
-    pub(super) fn queued(&self) -> Option<usize> {
-        os::unsent(&self.0.plain).ok()
     }
 }
 
@@ -155,7 +133,7 @@ pub(super) struct In(Arc<Way>);
 
 impl In {
     /// One datagram of the peer's; those of others are dropped.
-    pub(super) async fn recv(&mut self, buffer: &mut Vec<u8>) -> io::Result<usize> {
+    pub(super) async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
         let peer = self.0.known().await?;
         loop {
             let before = buffer.len();

@@ -53,6 +53,11 @@ impl Visitors {
         seen.opened > seen.closed || seen.opened > 0 && times_open(&self.device) > 1
     }
 
+    /// Whether anybody has ever opened the slave.
+    pub(super) fn came(&self) -> bool {
+        self.seen.borrow().opened > 0
+    }
+
     /// Waits until somebody has had the slave open for 100 ms.
     ///
     /// One who opens it and leaves (`stty -F`) does not count. Cancelling it loses nothing.

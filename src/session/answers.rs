@@ -8,6 +8,7 @@ use crate::scene::Plan;
 use crate::score::{AttitudeError, Scorer};
 use crate::time::SimTime;
 use crate::wire::{Protocol, answer::Listener};
+use bytes::BytesMut;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -37,7 +38,7 @@ impl Ear {
     /// stands in the other side's way.
     pub(super) async fn listen(self, link: usize, protocol: Protocol, mut receiver: Receiver) {
         let mut listener = Listener::new(protocol);
-        let mut buffer = Vec::with_capacity(4096);
+        let mut buffer = BytesMut::with_capacity(4096);
         loop {
             buffer.clear();
             match receiver.recv(&mut buffer).await {

@@ -20,6 +20,7 @@ use std::time::Duration;
 use tokio::process::Child;
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::oneshot;
+use tokio::time::Instant;
 
 /// Packets made ahead, 2 MB: about a second of the fastest sensors, and seven at 1 kHz.
 const RING: usize = 8192;
@@ -32,14 +33,22 @@ const PRIORITY: i32 = 50;
 /// For answers that are still on their way when the last packet is out.
 const LAST_ANSWERS: Duration = Duration::from_millis(200);
 
+/// At full speed nothing moves without a reader; one who is away for so long has left for good.
+const ABSENCE: Duration = Duration::from_secs(5);
+
 /// Runs a job to its end, to Ctrl-C or to the command's end, and tells `on` what happens meanwhile.
 ///
 /// # Errors
 /// A link that cannot be opened, nobody on the other side in time, a command that does not start.
 pub fn run(job: Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
+    run_with(job, ABSENCE, on)
+}
+
+fn run_with(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let runtime = runtime.map_err(|source| SessionError::System { doing: "start the control loop", source })?;
-    tokio::task::LocalSet::new().block_on(&runtime, Run::new(job).go(on))
+    let runtime =
+        runtime.map_err(|source| SessionError::System { doing: "start the control loop", source })?;
+    tokio::task::LocalSet::new().block_on(&runtime, Run::new(job, absence).go(on))
 }
 
 struct Run {
@@ -52,6 +61,9 @@ struct Run {
     ended: Option<i32>,
     /// Tasks that read what comes back; each holds its link open.
     ears: Vec<tokio::task::JoinHandle<()>>,
+    absence: Duration,
+    /// The link whose reader has left for good.
+    left: Option<usize>,
 }
 
 /// What ended a wait.
@@ -61,11 +73,30 @@ enum Woke<T> {
     CommandEnded,
 }
 
+/// Since when no packet has moved because a reader is gone.
+struct Absence {
+    packets: u64,
+    since: Instant,
+}
+
+impl Absence {
+    /// The link whose reader has been gone for `limit`.
+    fn look(&mut self, packets: u64, links: &[Link], limit: Duration) -> Option<usize> {
+        let still = packets == self.packets;
+        let left = still.then(|| links.iter().position(Link::peer_has_left)).flatten();
+        if left.is_none() {
+            *self = Absence { packets, since: Instant::now() };
+        }
+        left.filter(|_| self.since.elapsed() >= limit)
+    }
+}
+
 struct Signals(Signal, Signal);
 
 impl Signals {
     fn new() -> Result<Signals, SessionError> {
-        let on = |kind| signal(kind).map_err(|source| SessionError::System { doing: "listen for Ctrl-C", source });
+        let on =
+            |kind| signal(kind).map_err(|source| SessionError::System { doing: "listen for Ctrl-C", source });
         Ok(Signals(on(SignalKind::interrupt())?, on(SignalKind::terminate())?))
     }
 
@@ -87,7 +118,7 @@ impl Program {
 }
 
 impl Run {
-    fn new(job: Job) -> Run {
+    fn new(job: Job, absence: Duration) -> Run {
         let heard = Heard { damaged: vec![0; job.outputs.len()], ..Heard::default() };
         let shared = Shared::default();
         shared.start_ns.store(-1, Ordering::Relaxed);
@@ -99,6 +130,8 @@ impl Run {
             interrupted: false,
             ended: None,
             ears: Vec::new(),
+            absence,
+            left: None,
         }
     }
 
@@ -132,7 +165,7 @@ impl Run {
         self.listen(&mut links);
         let pacer = Pacer::new(self.clock, consumer, senders, self.job.speed);
         let (pacing, mut notices, mut done) = self.start_pacer(pacer)?;
-        self.attend(on, &mut signals, &mut program, &mut notices, &mut done).await;
+        self.attend(on, &links, &mut signals, &mut program, &mut notices, &mut done).await;
         let (mut pacer, granted) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         let made = self.collect(producer, &mut pacer);
         self.finish(Ended { pacer, links, program, names, granted, made }).await
@@ -155,7 +188,7 @@ impl Run {
             return Ok(true);
         }
         let waited = self.job.wait;
-        let deadline = tokio::time::Instant::now() + waited;
+        let deadline = Instant::now() + waited;
         for link in links {
             let name = link.name().to_string();
             let woke = tokio::select! {
@@ -189,7 +222,11 @@ impl Run {
                 speed: self.job.speed,
                 heard: self.heard.clone(),
             };
-            self.ears.push(tokio::task::spawn_local(ear.listen(i, self.job.outputs[i].to.protocol, receiver)));
+            self.ears.push(tokio::task::spawn_local(ear.listen(
+                i,
+                self.job.outputs[i].to.protocol,
+                receiver,
+            )));
         }
     }
 
@@ -206,14 +243,16 @@ impl Run {
             (pacer, granted)
         };
         let thread = thread::Builder::new().name("pacing".into()).spawn(body);
-        let thread = thread.map_err(|source| SessionError::System { doing: "start the pacing thread", source })?;
+        let thread =
+            thread.map_err(|source| SessionError::System { doing: "start the pacing thread", source })?;
         Ok((thread, notices, done))
     }
 
-    /// Reports progress until the pacing thread has ended, or the user or the command ends it.
+    /// Reports progress until the pacing thread has ended, or the user, the command or a reader that is gone ends it.
     async fn attend(
         &mut self,
         on: &mut dyn FnMut(Event<'_>),
+        links: &[Link],
         signals: &mut Signals,
         program: &mut Program,
         notices: &mut oneshot::Receiver<Option<String>>,
@@ -223,10 +262,20 @@ impl Run {
             on(Event::Notice(notice));
         }
         let mut ticks = tokio::time::interval(PROGRESS);
+        // Paced, a packet that nobody reads is dropped and counted; and a command ends the run by ending.
+        let waits = self.job.speed == Speed::Max && self.job.command.is_empty();
+        let mut absence = Absence { packets: 0, since: Instant::now() };
         loop {
             tokio::select! {
                 _ = &mut *done => break,
-                _ = ticks.tick() => on(Event::Progress(self.progress())),
+                _ = ticks.tick() => {
+                    let progress = self.progress();
+                    if waits && let Some(link) = absence.look(progress.packets, links, self.absence) {
+                        self.left = Some(link);
+                        self.shared.stop.store(true, Ordering::Relaxed);
+                    }
+                    on(Event::Progress(progress));
+                }
                 () = signals.recv(), if !self.interrupted => {
                     self.interrupted = true;
                     self.shared.stop.store(true, Ordering::Relaxed);
@@ -317,16 +366,23 @@ impl Run {
 
     /// The end if all was played, else where the last packet was due.
     fn played(&self, tallies: &[LinkTally]) -> SimTime {
-        let cut_short = self.interrupted || self.ended.is_some() || tallies.iter().all(|tally| tally.packets == 0);
+        let stopped = self.interrupted || self.ended.is_some() || self.left.is_some();
+        let cut_short = stopped || tallies.iter().all(|tally| tally.packets == 0);
         let last = SimTime(self.shared.scene_ns.load(Ordering::Relaxed));
         if cut_short { last.min(self.job.end) } else { self.job.end }
     }
 
-    fn link_reports(&self, tallies: &[LinkTally], gone: &[Option<std::io::ErrorKind>], names: Vec<String>) -> Vec<LinkReport> {
+    fn link_reports(
+        &self,
+        tallies: &[LinkTally],
+        gone: &[Option<std::io::ErrorKind>],
+        names: Vec<String>,
+    ) -> Vec<LinkReport> {
         let damaged = self.heard.borrow().damaged.clone();
         let per_link = self.job.outputs.iter().zip(tallies).zip(gone).zip(names).zip(damaged);
         per_link
-            .map(|((((output, tally), gone), name), damaged)| LinkReport {
+            .enumerate()
+            .map(|(i, ((((output, tally), gone), name), damaged))| LinkReport {
                 to: output.to.to_string(),
                 name,
                 packets: tally.packets,
@@ -335,7 +391,10 @@ impl Run {
                 utilisation: self.utilisation(output),
                 crc_errors: damaged,
                 lost_seq: None,
-                broken: gone.map(|kind| kind.to_string()),
+                broken: match gone {
+                    _ if self.left == Some(i) => Some("the reader left".into()),
+                    gone => gone.map(|kind| kind.to_string()),
+                },
             })
             .collect()
     }
@@ -344,7 +403,8 @@ impl Run {
     fn utilisation(&self, output: &crate::scene::Output) -> Option<f64> {
         let baud = output.to.address.baud()?;
         let plan = &self.job.plan;
-        let setup = wire::Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire };
+        let setup =
+            wire::Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire };
         let (bytes, _) = wire::load(output.to.protocol, &setup);
         Some(bytes / (f64::from(baud) / 10.0))
     }
@@ -377,7 +437,8 @@ struct Ended {
     made: (Made, [u64; 3]),
 }
 
-type Paced = (JoinHandle<(Pacer<WallClock>, Granted)>, oneshot::Receiver<Option<String>>, oneshot::Receiver<()>);
+type Paced =
+    (JoinHandle<(Pacer<WallClock>, Granted)>, oneshot::Receiver<Option<String>>, oneshot::Receiver<()>);
 
 /// What the system granted the pacing thread.
 #[derive(Clone, Debug, Default)]
@@ -400,5 +461,59 @@ fn privileges() -> Granted {
         "not granted: {}; packets may be later on a busy machine. To grant it: `sudo setcap cap_sys_nice,cap_ipc_lock+ep` on this program, or `rtprio 50` and `memlock unlimited` in /etc/security/limits.conf",
         refused.join(", ")
     );
-    Granted { priority: priority.is_ok(), memory: memory.is_ok(), refused: (!refused.is_empty()).then_some(notice) }
+    Granted {
+        priority: priority.is_ok(),
+        memory: memory.is_ok(),
+        refused: (!refused.is_empty()).then_some(notice),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Output, Plan};
+    use std::fs::OpenOptions;
+    use std::io::Read;
+    use std::os::unix::fs::OpenOptionsExt;
+
+    #[test]
+    fn at_full_speed_a_reader_that_leaves_for_good_ends_the_run() {
+        let scene = "duration = \"1000 s\"\n[gyro]\nrate = \"8 kHz\"\n";
+        let plan = Arc::new(Plan::parse(scene, "test", "test", &[]).unwrap());
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("imu");
+        let job = Job {
+            end: plan.duration,
+            plan,
+            outputs: vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())],
+            speed: Speed::Max,
+            wait: Duration::from_secs(60),
+            command: Vec::new(),
+            keep_stdout: false,
+            estimator: String::new(),
+        };
+        let read_a_while = move || {
+            // Away for less than is allowed, it may come back.
+            for _ in 0..2 {
+                let mut port =
+                    OpenOptions::new().read(true).custom_flags(libc::O_NOCTTY).open(&path).unwrap();
+                port.read_exact(&mut vec![0; 100_000]).unwrap();
+                drop(port);
+                thread::sleep(Duration::from_millis(150));
+            }
+        };
+        let mut reader = None;
+        let outcome = run_with(job, Duration::from_secs(2), &mut |event| {
+            if let Event::Ready(_) = event {
+                reader = Some(thread::spawn(read_a_while.clone()));
+            }
+        });
+        reader.unwrap().join().unwrap();
+        let outcome = outcome.unwrap();
+        let link = &outcome.links[0];
+        assert_eq!(link.broken.as_deref(), Some("the reader left"));
+        assert!(link.bytes >= 200_000, "{link:?}");
+        assert!(outcome.played < SimTime(1_000_000_000_000));
+        assert!(!outcome.interrupted);
+    }
 }
