@@ -98,7 +98,10 @@ fn run(plan: &Arc<Plan>, to: &str) -> u64 {
     let mut reader = None;
     let outcome = session::run(job, &mut |event| {
         if let Event::Ready(name) = event
-            && let Some(path) = name.split_once('@').map(|(_, path)| path.to_string()).filter(|path| path.starts_with("/dev/pts"))
+            && let Some(path) = name
+                .split_once('@')
+                .map(|(_, path)| path.to_string())
+                .filter(|path| path.starts_with("/dev/pts"))
         {
             reader = Some(std::thread::spawn(move || drain(&path)));
         }
@@ -112,7 +115,8 @@ fn run(plan: &Arc<Plan>, to: &str) -> u64 {
 
 /// Reads a pty by its path until it closes.
 fn drain(path: &str) {
-    let mut pty = std::fs::OpenOptions::new().read(true).custom_flags(libc::O_NOCTTY).open(path).expect("the pty");
+    let mut pty =
+        std::fs::OpenOptions::new().read(true).custom_flags(libc::O_NOCTTY).open(path).expect("the pty");
     let mut buffer = [0; 65536];
     while matches!(pty.read(&mut buffer), Ok(count) if count > 0) {}
 }

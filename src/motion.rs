@@ -54,6 +54,9 @@ pub struct Context {
     pub body_sign: f64,
 }
 
+/// What a builder makes of a motion's values.
+pub type Built = Result<Box<dyn Motion>, KeyError>;
+
 /// A kind of motion: its name, its keys and how to build it.
 #[derive(Debug)]
 pub struct MotionKind {
@@ -64,7 +67,7 @@ pub struct MotionKind {
     /// Its keys besides `kind` and `duration`.
     pub keys: &'static [Key],
     /// From values to a motion.
-    pub build: fn(&Values, &Context) -> Result<Box<dyn Motion>, KeyError>,
+    pub build: fn(&Values, &Context) -> Built,
 }
 
 /// Every kind of motion.

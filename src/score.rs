@@ -27,7 +27,8 @@ impl AttitudeError {
         AttitudeError {
             total: truth.angle_to(estimate),
             inclination: 2.0 * libm::atan2(libm::hypot(e.x, e.y), libm::hypot(e.w, e.z)),
-            heading: heading - TAU * libm::round(heading / TAU).clamp(-1.0, 1.0) * f64::from(heading.abs() > PI),
+            heading: heading
+                - TAU * libm::round(heading / TAU).clamp(-1.0, 1.0) * f64::from(heading.abs() > PI),
         }
     }
 }

@@ -75,11 +75,7 @@ pub(crate) fn put_le<T: Scalar>(bytes: &mut [u8], at: Range<usize>, value: T) {
 }
 
 /// Writes little-endian numbers one after the other.
-pub(crate) fn put_les<T: Scalar, const N: usize>(
-    bytes: &mut [u8],
-    at: Range<usize>,
-    values: [T; N],
-) {
+pub(crate) fn put_les<T: Scalar, const N: usize>(bytes: &mut [u8], at: Range<usize>, values: [T; N]) {
     for (i, value) in values.into_iter().enumerate() {
         put_le(bytes, element::<T>(&at, i), value);
     }
@@ -93,11 +89,7 @@ pub(crate) fn put_be<T: Scalar>(bytes: &mut [u8], at: Range<usize>, value: T) {
 }
 
 /// Writes big-endian numbers one after the other.
-pub(crate) fn put_bes<T: Scalar, const N: usize>(
-    bytes: &mut [u8],
-    at: Range<usize>,
-    values: [T; N],
-) {
+pub(crate) fn put_bes<T: Scalar, const N: usize>(bytes: &mut [u8], at: Range<usize>, values: [T; N]) {
     for (i, value) in values.into_iter().enumerate() {
         put_be(bytes, element::<T>(&at, i), value);
     }

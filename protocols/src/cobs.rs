@@ -52,9 +52,7 @@ pub fn decode(data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
         }
         let zero = code != 0xff && !after.is_empty();
         let end = len + count + usize::from(zero);
-        let place = out
-            .get_mut(len..end)
-            .ok_or(Error::BufferTooSmall { needed: end })?;
+        let place = out.get_mut(len..end).ok_or(Error::BufferTooSmall { needed: end })?;
         place[..count].copy_from_slice(run);
         place[count..].fill(0);
         (len, rest) = (end, after);

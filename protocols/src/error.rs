@@ -33,11 +33,7 @@ pub enum Error {
 impl Error {
     /// Refuses `found` bytes where exactly `expected` are needed.
     pub(crate) fn check_length(expected: usize, found: usize) -> Result<(), Self> {
-        if expected == found {
-            Ok(())
-        } else {
-            Err(Self::Length { expected, found })
-        }
+        if expected == found { Ok(()) } else { Err(Self::Length { expected, found }) }
     }
 }
 

@@ -13,10 +13,7 @@ pub struct Losses {
 impl Losses {
     /// Nothing seen yet.
     pub const fn new() -> Self {
-        Self {
-            last: None,
-            lost: 0,
-        }
+        Self { last: None, lost: 0 }
     }
 
     /// Takes the number of a packet that arrived and returns how many are missing before it.

@@ -1,15 +1,13 @@
 //! The `mavlink` crate as the other side: the same bytes, and it reads ours.
 
 use ::mavlink::dialects::common::{
-    ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, HEARTBEAT_DATA, HIL_SENSOR_DATA,
-    HilSensorUpdatedFlags, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
-    SYSTEM_TIME_DATA,
+    ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, HEARTBEAT_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags,
+    MavAutopilot, MavMessage, MavModeFlag, MavState, MavType, SYSTEM_TIME_DATA,
 };
 use ::mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion};
 use proptest::prelude::*;
 use ratetable_protocols::mavlink::{
-    self, Header, Message, Version, attitude, attitude_quaternion, heartbeat, hil_sensor,
-    system_time,
+    self, Header, Message, Version, attitude, attitude_quaternion, heartbeat, hil_sensor, system_time,
 };
 
 type Pair = (Message, MavMessage);
@@ -38,14 +36,8 @@ fn heartbeats() -> impl Strategy<Value = Pair> {
 
 fn system_times() -> impl Strategy<Value = Pair> {
     any::<(u64, u32)>().prop_map(|(time_unix_usec, time_boot_ms)| {
-        let ours = system_time::Repr {
-            time_unix_usec,
-            time_boot_ms,
-        };
-        let theirs = SYSTEM_TIME_DATA {
-            time_unix_usec,
-            time_boot_ms,
-        };
+        let ours = system_time::Repr { time_unix_usec, time_boot_ms };
+        let theirs = SYSTEM_TIME_DATA { time_unix_usec, time_boot_ms };
         (Message::SystemTime(ours), MavMessage::SYSTEM_TIME(theirs))
     })
 }
@@ -54,34 +46,15 @@ fn attitudes() -> impl Strategy<Value = Pair> {
     any::<(u32, [f32; 6])>().prop_map(|(time_boot_ms, f)| {
         let [roll, pitch, yaw, rollspeed, pitchspeed, yawspeed] = f;
         let angular_rate = [rollspeed, pitchspeed, yawspeed];
-        let ours = attitude::Repr {
-            time_boot_ms,
-            roll,
-            pitch,
-            yaw,
-            angular_rate,
-        };
-        let theirs = ATTITUDE_DATA {
-            time_boot_ms,
-            roll,
-            pitch,
-            yaw,
-            rollspeed,
-            pitchspeed,
-            yawspeed,
-        };
+        let ours = attitude::Repr { time_boot_ms, roll, pitch, yaw, angular_rate };
+        let theirs = ATTITUDE_DATA { time_boot_ms, roll, pitch, yaw, rollspeed, pitchspeed, yawspeed };
         (Message::Attitude(ours), MavMessage::ATTITUDE(theirs))
     })
 }
 
 fn attitude_quaternions() -> impl Strategy<Value = Pair> {
     any::<(u32, [f32; 4], [f32; 3], [f32; 4])>().prop_map(|(time_boot_ms, q, rate, offset)| {
-        let ours = attitude_quaternion::Repr {
-            time_boot_ms,
-            q,
-            angular_rate: rate,
-            repr_offset_q: offset,
-        };
+        let ours = attitude_quaternion::Repr { time_boot_ms, q, angular_rate: rate, repr_offset_q: offset };
         let theirs = ATTITUDE_QUATERNION_DATA {
             time_boot_ms,
             q1: q[0],
@@ -93,10 +66,7 @@ fn attitude_quaternions() -> impl Strategy<Value = Pair> {
             yawspeed: rate[2],
             repr_offset_q: offset,
         };
-        (
-            Message::AttitudeQuaternion(ours),
-            MavMessage::ATTITUDE_QUATERNION(theirs),
-        )
+        (Message::AttitudeQuaternion(ours), MavMessage::ATTITUDE_QUATERNION(theirs))
     })
 }
 
@@ -138,13 +108,7 @@ fn hil_sensors() -> impl Strategy<Value = Pair> {
 }
 
 fn pairs() -> impl Strategy<Value = Pair> {
-    prop_oneof![
-        heartbeats(),
-        system_times(),
-        attitudes(),
-        attitude_quaternions(),
-        hil_sensors(),
-    ]
+    prop_oneof![heartbeats(), system_times(), attitudes(), attitude_quaternions(), hil_sensors(),]
 }
 
 /// What the crate writes.

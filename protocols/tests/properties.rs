@@ -8,13 +8,8 @@ use ratetable_protocols::{Error, cobs};
 
 fn any_packet() -> impl Strategy<Value = Packet> {
     prop_oneof![
-        any::<([i16; 3], i16, [i16; 3])>().prop_map(|(accel, temperature, gyro)| Packet::Imu(
-            mpu::imu::Repr {
-                accel,
-                temperature,
-                gyro
-            }
-        )),
+        any::<([i16; 3], i16, [i16; 3])>()
+            .prop_map(|(accel, temperature, gyro)| Packet::Imu(mpu::imu::Repr { accel, temperature, gyro })),
         any::<(u8, [i16; 3], u8)>().prop_map(|(st1, field, st2)| Packet::Mag(mpu::mag::Repr {
             st1,
             field,
@@ -34,9 +29,7 @@ fn any_message() -> impl Strategy<Value = Message> {
     let ids = prop_oneof![Just(0), Just(2), Just(30), Just(31), Just(107)];
     (ids, vec(any::<u8>(), 65))
         .prop_map(|(id, bytes)| Message::parse(id, &bytes).unwrap())
-        .prop_filter("not-a-number is not equal to itself", |message| {
-            message == message
-        })
+        .prop_filter("not-a-number is not equal to itself", |message| message == message)
 }
 
 fn any_header() -> impl Strategy<Value = Header> {

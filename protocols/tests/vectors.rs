@@ -90,11 +90,7 @@ fn the_documentation_shows_every_vector() {
         let path = format!("{}/../docs/wire/{format}.md", env!("CARGO_MANIFEST_DIR"));
         let page = std::fs::read_to_string(&path).unwrap();
         for vector in vectors(format) {
-            assert!(
-                page.contains(vector.name()),
-                "{path} lacks {}",
-                vector.name()
-            );
+            assert!(page.contains(vector.name()), "{path} lacks {}", vector.name());
             assert!(page.contains(vector.hex()), "{path} lacks {}", vector.hex());
         }
     }

@@ -77,13 +77,22 @@ fn warnings(plan: &Plan) -> Vec<String> {
         }
     }
     if plan.duration > plan.trajectory.moving_until() && plan.trajectory.moving_until().0 > 0 {
-        warnings.push(format!("after {} the motions are over and the vehicle holds until {}", plan.trajectory.moving_until(), plan.duration));
+        warnings.push(format!(
+            "after {} the motions are over and the vehicle holds until {}",
+            plan.trajectory.moving_until(),
+            plan.duration
+        ));
     }
     for output in &plan.outputs {
         warnings.extend(wire::warnings(output.to.protocol, &plan.sensors));
         let (bytes, _) = wire::load(output.to.protocol, &setup(plan, output));
         if let Some(baud) = output.to.address.baud().filter(|baud| bytes * 10.0 > f64::from(*baud)) {
-            warnings.push(format!("{} needs {} bytes/s, but {baud} baud carries {} (8N1)", output.to, number(bytes), baud / 10));
+            warnings.push(format!(
+                "{} needs {} bytes/s, but {baud} baud carries {} (8N1)",
+                output.to,
+                number(bytes),
+                baud / 10
+            ));
         }
     }
     warnings
@@ -118,16 +127,32 @@ fn text(plan: &Plan) -> String {
             terms(plan, sensor).join(" "),
         ]
     });
-    let heading = ["sensor", "rate", "part", "noise/sample", "one-sided density", "random walk", "count", "terms evaluated"];
+    let heading = [
+        "sensor",
+        "rate",
+        "part",
+        "noise/sample",
+        "one-sided density",
+        "random walk",
+        "count",
+        "terms evaluated",
+    ];
     text += &table(&heading, &rows.collect::<Vec<_>>());
     text += "\nOne-sided density (datasheets) = √2 · random walk (Allan deviation at 1 s; Kalibr's noise density).\n";
     if !plan.outputs.is_empty() {
         let rows = plan.outputs.iter().map(|output| {
             let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
-            let share = output.to.address.baud().map_or("-".into(), |baud| format!("{:.0} %", 1000.0 * bytes / f64::from(baud)));
+            let share = output
+                .to
+                .address
+                .baud()
+                .map_or("-".into(), |baud| format!("{:.0} %", 1000.0 * bytes / f64::from(baud)));
             vec![output.to.to_string(), number(packets), number(bytes), share]
         });
-        text += &format!("\n{}", table(&["output", "packets/s", "bytes/s", "of baud rate"], &rows.collect::<Vec<_>>()));
+        text += &format!(
+            "\n{}",
+            table(&["output", "packets/s", "bytes/s", "of baud rate"], &rows.collect::<Vec<_>>())
+        );
     }
     for drawn in &plan.drawn {
         text += &format!("drawn: {} = {}\n", drawn.key, drawn.value);

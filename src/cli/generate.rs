@@ -3,8 +3,8 @@
 use super::progress::Bar;
 use super::{Refusal, Verdict};
 use crate::dataset::{self, FORMATS, Figure, Format, Options, Summary};
-use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
 use crate::report::Report;
+use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
 use crate::scene::{Plan, nearest};
 use crate::session::{Outcome, on_interrupt};
 use std::path::{Path, PathBuf};
@@ -34,7 +34,8 @@ pub struct Arguments {
 fn format(name: &str) -> Result<&'static Format, String> {
     Format::from_name(name).ok_or_else(|| {
         let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
-        let near = nearest(name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
+        let near =
+            nearest(name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
         format!("`{name}` is no format of this version ({}){near}", names.join(", "))
     })
 }
@@ -58,7 +59,12 @@ pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
     bar.clear();
     let summary = written?;
     let seconds = started.elapsed().as_secs_f64();
-    eprintln!("{}: {} of scene, {} rows in {seconds:.2} s", summary.folder.display(), plan.duration, summary.rows);
+    eprintln!(
+        "{}: {} of scene, {} rows in {seconds:.2} s",
+        summary.folder.display(),
+        plan.duration,
+        summary.rows
+    );
     say_clipped(&plan, &summary);
     Ok(Verdict::Fine)
 }
@@ -72,7 +78,10 @@ fn say_clipped(plan: &Plan, summary: &Summary) {
 /// Every figure as a file.
 fn figures(plan: &Plan) -> Vec<(String, Vec<u8>)> {
     let figures = dataset::figures(plan, plan.duration);
-    figures.iter().map(|figure| (format!("{}.svg", figure.file_stem), draw(plan, figure).into_bytes())).collect()
+    figures
+        .iter()
+        .map(|figure| (format!("{}.svg", figure.file_stem), draw(plan, figure).into_bytes()))
+        .collect()
 }
 
 /// Readings one under another with the truth over each; reference angles together in one panel.
@@ -84,10 +93,16 @@ fn draw(plan: &Plan, figure: &Figure) -> String {
         name: figure.series[i].label,
         x: &columns[i].0,
         y: &columns[i].1,
-        kind: if figure.series[i].is_truth && !readings.is_empty() { LineKind::Truth } else { LineKind::Value },
+        kind: if figure.series[i].is_truth && !readings.is_empty() {
+            LineKind::Truth
+        } else {
+            LineKind::Value
+        },
     };
     let stacked = if !readings.is_empty() {
-        let pair = |(k, &i): (usize, &usize)| panel(figure, figure.series[i].label, vec![line(i), line(readings.len() + k)]);
+        let pair = |(k, &i): (usize, &usize)| {
+            panel(figure, figure.series[i].label, vec![line(i), line(readings.len() + k)])
+        };
         readings.iter().enumerate().map(pair).collect()
     } else {
         vec![panel(figure, "", (0..figure.series.len()).map(line).collect())]
@@ -116,7 +131,13 @@ pub fn may_write(dir: &Path, force: bool) -> Result<(), Refusal> {
 }
 
 /// The dataset of what a run played, with the estimates that came back and the run's report.
-pub fn after_run(plan: &Plan, outcome: &Outcome, report: &Report, dir: &Path, force: bool) -> Result<(), Refusal> {
+pub fn after_run(
+    plan: &Plan,
+    outcome: &Outcome,
+    report: &Report,
+    dir: &Path,
+    force: bool,
+) -> Result<(), Refusal> {
     let report = serde_json::to_string_pretty(report)? + "\n";
     let mut progress = |_| {};
     let options = Options {

@@ -40,7 +40,8 @@ pub fn list(arguments: &Arguments) -> Result<Verdict, Refusal> {
             let heading = if arguments.what.is_none() { format!("{name}\n") } else { String::new() };
             let indent = if arguments.what.is_none() { "  " } else { "" };
             let body = body(*what)?;
-            let lines: String = body.lines().map(|line| format!("{}\n", format!("{indent}{line}").trim_end())).collect();
+            let lines: String =
+                body.lines().map(|line| format!("{}\n", format!("{indent}{line}").trim_end())).collect();
             say(&format!("{heading}{lines}"));
         }
     }
@@ -49,9 +50,10 @@ pub fn list(arguments: &Arguments) -> Result<Verdict, Refusal> {
 
 fn body(what: What) -> Result<String, Refusal> {
     Ok(match what {
-        What::Scenes => {
-            table(&["name", "about"], &builtin::SCENES.map(|(name, text)| vec![name.into(), builtin::about(text).into()]))
-        }
+        What::Scenes => table(
+            &["name", "about"],
+            &builtin::SCENES.map(|(name, text)| vec![name.into(), builtin::about(text).into()]),
+        ),
         What::Parts => parts()?,
         What::Motions => motions(),
         What::Keys => keys(),
@@ -128,6 +130,8 @@ fn ports() -> String {
         return "no serial port was found; a pty needs none: ratetable run SCENE --to mpu@pty\n".into();
     }
     let known = |text: Option<String>| text.unwrap_or_else(|| "-".into());
-    let rows = ports.into_iter().map(|port| vec![port.path.display().to_string(), known(port.product), known(port.manufacturer), port.command]);
+    let rows = ports.into_iter().map(|port| {
+        vec![port.path.display().to_string(), known(port.product), known(port.manufacturer), port.command]
+    });
     table(&["port", "product", "manufacturer", "try"], &rows.collect::<Vec<_>>())
 }

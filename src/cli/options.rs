@@ -32,7 +32,10 @@ pub fn speed(text: &str) -> Result<Speed, String> {
     match text.parse::<f64>() {
         _ if text == "max" => Ok(Speed::Max),
         Ok(times) if times.is_finite() && times > 0.0 => Ok(Speed::Times(times)),
-        _ => Err("write 1 for real time, another number above 0 for so many scene seconds a second, or max".into()),
+        _ => {
+            Err("write 1 for real time, another number above 0 for so many scene seconds a second, or max"
+                .into())
+        }
     }
 }
 

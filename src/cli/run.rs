@@ -56,7 +56,10 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if arguments.scene.is_none() && !arguments.to.is_empty() {
-        return Err(Refusal(format!("--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones", arguments.to[0].to)));
+        return Err(Refusal(format!(
+            "--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones",
+            arguments.to[0].to
+        )));
     }
     let plan = Plan::load(arguments.scene.as_deref().unwrap_or(DEMO_SCENE), &arguments.set)?;
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
@@ -112,7 +115,9 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
     }
     for output in outputs {
         wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
-        wire::warnings(output.to.protocol, &plan.sensors).iter().for_each(|warning| eprintln!("warning: {warning}"));
+        wire::warnings(output.to.protocol, &plan.sensors)
+            .iter()
+            .for_each(|warning| eprintln!("warning: {warning}"));
     }
     if let Some(dir) = &arguments.out {
         super::generate::may_write(dir, arguments.force)?;
@@ -139,7 +144,8 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
     bar.clear();
     let received = firmware.map(Firmware::end).transpose();
     let outcome = outcome?;
-    let received = received.map_err(|error| Refusal(format!("the demonstration's receiving side failed: {error}")))?;
+    let received =
+        received.map_err(|error| Refusal(format!("the demonstration's receiving side failed: {error}")))?;
     Ok((outcome, received))
 }
 
@@ -215,10 +221,14 @@ fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
 /// Losses, broken limits, and a command that failed.
 fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
     let lost = report.sensors.iter().filter(|sensor| sensor.dropped > 0);
-    let mut failed: Vec<_> = lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
-    let broken = report.links.iter().filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?)));
+    let mut failed: Vec<_> =
+        lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
+    let broken =
+        report.links.iter().filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?)));
     failed.extend(broken);
-    failed.extend(command.filter(|code| *code != 0).map(|code| format!("the command ended with exit code {code}")));
+    failed.extend(
+        command.filter(|code| *code != 0).map(|code| format!("the command ended with exit code {code}")),
+    );
     let value = serde_json::to_value(&*report)?;
     failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
     report.ok = failed.is_empty();

@@ -12,12 +12,15 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
         Some(times) => format!("at {} times real time", number(times)),
         None => "as fast as possible".to_string(),
     };
-    let mut text = format!("\n{}: {} {speed}, seed {}{ended}\n\n", report.scene, played(outcome.played), report.seed);
+    let mut text =
+        format!("\n{}: {} {speed}, seed {}{ended}\n\n", report.scene, played(outcome.played), report.seed);
     text += &sensors(report);
     text.push('\n');
     text += &links(report);
     if let Some(score) = &report.attitude {
-        let delay = score.delay_ms.map_or(String::new(), |delay| format!(", answers {} ms after their sample", number(delay)));
+        let delay = score
+            .delay_ms
+            .map_or(String::new(), |delay| format!(", answers {} ms after their sample", number(delay)));
         text += &format!(
             "\nattitude by {}: {} deg RMS against the truth (inclination {}, heading {}), {} deg at most; {} answers{delay}\n",
             score.estimator,
@@ -65,7 +68,17 @@ fn links(report: &Report) -> String {
     let rows = report.links.iter().map(|link| {
         let missed = link.lost_seq.map_or("-".into(), |lost| lost.to_string());
         let load = link.utilisation.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
-        vec![link.name.clone(), link.packets.to_string(), link.bytes.to_string(), link.dropped.to_string(), missed, load]
+        vec![
+            link.name.clone(),
+            link.packets.to_string(),
+            link.bytes.to_string(),
+            link.dropped.to_string(),
+            missed,
+            load,
+        ]
     });
-    table(&["link", "packets", "bytes", "dropped", "missed by receiver", "of baud rate"], &rows.collect::<Vec<_>>())
+    table(
+        &["link", "packets", "bytes", "dropped", "missed by receiver", "of baud rate"],
+        &rows.collect::<Vec<_>>(),
+    )
 }

@@ -51,7 +51,7 @@ impl Clock for WallClock {
 const NANOS: i64 = 1_000_000_000;
 
 fn monotonic() -> i64 {
-    let now = clock_gettime(ClockId::Monotonic.into());
+    let now = clock_gettime(ClockId::Monotonic);
     now.tv_sec * NANOS + now.tv_nsec
 }
 

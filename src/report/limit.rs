@@ -37,13 +37,19 @@ impl FromStr for Limit {
     type Err = LimitError;
 
     fn from_str(text: &str) -> Result<Limit, LimitError> {
-        let found = BOUNDS.iter().find_map(|&(sign, bound, _)| text.split_once(sign).map(|parts| (parts, bound)));
+        let found =
+            BOUNDS.iter().find_map(|&(sign, bound, _)| text.split_once(sign).map(|parts| (parts, bound)));
         let Some(((field, value), bound)) = found else {
-            return Err(LimitError(format!("`{text}` is no limit: write FIELD<VALUE, such as 'sensors.gyro.late_us.p99<200'")));
+            return Err(LimitError(format!(
+                "`{text}` is no limit: write FIELD<VALUE, such as 'sensors.gyro.late_us.p99<200'"
+            )));
         };
         match value.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Limit { field: field.trim().to_string(), bound, value }),
-            _ => Err(LimitError(format!("`{text}`: `{}` is no number; a limit's value is a bare number in the field's own unit", value.trim()))),
+            _ => Err(LimitError(format!(
+                "`{text}`: `{}` is no number; a limit's value is a bare number in the field's own unit",
+                value.trim()
+            ))),
         }
     }
 }
@@ -82,7 +88,8 @@ impl Limit {
             Bound::Above => value > self.value,
             Bound::AtLeast => value >= self.value,
         };
-        let against = BOUNDS.iter().find(|(_, bound, _)| *bound == self.bound).map_or("", |(_, _, sign)| sign);
+        let against =
+            BOUNDS.iter().find(|(_, bound, _)| *bound == self.bound).map_or("", |(_, _, sign)| sign);
         (!kept).then(|| format!("{} = {} {against} {}", self.field, super::number(value), self.value))
     }
 
@@ -93,7 +100,8 @@ impl Limit {
             let (next, names) = match value {
                 Value::Object(map) => (map.get(step), map.keys().cloned().collect::<Vec<_>>()),
                 Value::Array(items) => {
-                    let named = items.iter().find(|item| item.get("name").and_then(Value::as_str) == Some(step));
+                    let named =
+                        items.iter().find(|item| item.get("name").and_then(Value::as_str) == Some(step));
                     let numbered = step.parse::<usize>().ok().and_then(|i| items.get(i));
                     let names = items.iter().filter_map(|item| item.get("name")?.as_str().map(String::from));
                     (named.or(numbered), names.collect())
@@ -102,7 +110,10 @@ impl Limit {
             };
             value = next.ok_or_else(|| {
                 let instead = if names.is_empty() { "nothing below it".into() } else { names.join(", ") };
-                LimitError(format!("`{}` is no field of the report: there is no `{step}`, but {instead}", self.field))
+                LimitError(format!(
+                    "`{}` is no field of the report: there is no `{step}`, but {instead}",
+                    self.field
+                ))
             })?;
         }
         Ok(value)
@@ -145,7 +156,12 @@ mod tests {
 
     #[test]
     fn mistakes_say_what_would_be_right() {
-        for (text, says) in [("p99=3", "FIELD<VALUE"), ("p99<fast", "`fast` is no number"), ("x<", "is no number"), ("x<nan", "no number")] {
+        for (text, says) in [
+            ("p99=3", "FIELD<VALUE"),
+            ("p99<fast", "`fast` is no number"),
+            ("x<", "is no number"),
+            ("x<nan", "no number"),
+        ] {
             assert!(text.parse::<Limit>().unwrap_err().to_string().contains(says), "{text}");
         }
         for (text, says) in [

@@ -20,7 +20,8 @@ pub fn table(heading: &[&str], rows: &[Vec<String>]) -> String {
         cells.chain(heading.get(i).map(|cell| cell.chars().count())).max().unwrap_or(0)
     };
     let widths: Vec<_> = (0..heading.len()).map(width).collect();
-    let is_number = |cell: &String| cell == "-" || cell.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
+    let is_number =
+        |cell: &String| cell == "-" || cell.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
     let numbers = |i: usize| rows.iter().filter_map(|row| row.get(i)).all(is_number);
     let right: Vec<_> = (0..heading.len()).map(numbers).collect();
     let line = |cells: Vec<&str>| {
@@ -42,8 +43,15 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         for (value, text) in [
-            (0.0, "0"), (-0.0, "0"), (312.0, "312"), (0.1234567, "0.1235"), (1000.02, "1000"), (12.5, "12.5"),
-            (1e-9, "1.000e-9"), (63000.0, "63000"), (-2.5, "-2.5"),
+            (0.0, "0"),
+            (-0.0, "0"),
+            (312.0, "312"),
+            (0.1234567, "0.1235"),
+            (1000.02, "1000"),
+            (12.5, "12.5"),
+            (1e-9, "1.000e-9"),
+            (63000.0, "63000"),
+            (-2.5, "-2.5"),
         ] {
             assert_eq!(number(value), text);
         }
@@ -51,7 +59,8 @@ mod tests {
 
     #[test]
     fn columns_line_up() {
-        let text = table(&["sensor", "Hz"], &[vec!["gyro".into(), "1000".into()], vec!["mag".into(), "100".into()]]);
+        let text =
+            table(&["sensor", "Hz"], &[vec!["gyro".into(), "1000".into()], vec!["mag".into(), "100".into()]]);
         assert_eq!(text, "sensor    Hz\ngyro    1000\nmag      100\n");
     }
 }

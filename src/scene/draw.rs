@@ -29,7 +29,7 @@ impl Section<'_> {
                 return None;
             }
         };
-        let Some((shape, low, high)) = self.distribution(key.name, kind, table) else { return None };
+        let (shape, low, high) = self.distribution(key.name, kind, table)?;
         let axes: &[usize] = if scalar { &[0] } else { &[0, 1, 2] };
         let mut drawn = [0.0; 3];
         for &axis in axes {

@@ -5,7 +5,11 @@
 pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("", "name", "what reports and datasets call it (default: the file's name)"),
     ("", "seed", "from which every random number comes, a whole number (default 0)"),
-    ("", "duration", "how long it lasts (default: the sum of its motions); after the last motion the vehicle holds"),
+    (
+        "",
+        "duration",
+        "how long it lasts (default: the sum of its motions); after the last motion the vehicle holds",
+    ),
     ("", "axes", "\"ned-frd\" (default) or \"enu-flu\": how this file and its datasets are written"),
     ("", "limits", "of the report, such as [\"sensors.gyro.late_us.p99<200\"]"),
     ("start", "attitude", "roll, pitch, yaw at t = 0: \"[0, 0, 0] deg\""),
@@ -23,7 +27,11 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("force", "acceleration", "a vector in `frame`"),
     ("force", "frame", "\"body\" (default) or \"nav\""),
     ("output", "to", "PROTOCOL@LINK, such as \"mpu@pty\""),
-    ("output", "layout", "of `mpu`: \"separate\" or \"burst\" (default: burst where gyro and accel tick alike)"),
+    (
+        "output",
+        "layout",
+        "of `mpu`: \"separate\" or \"burst\" (default: burst where gyro and accel tick alike)",
+    ),
 ];
 
 /// Keys of every sensor besides its error terms'.

@@ -129,7 +129,8 @@ fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'static str> {
 /// The preset's entries that the user's table leaves open.
 fn fill(section: &Section<'_>, kind: SensorKind, preset: &Table, mount: Option<&Entry>) -> Vec<Entry> {
     let noise_given = white_noise::KEYS.iter().any(|key| section.has_quietly(key));
-    let open = |key: &str| !section.has_quietly(key) && !(noise_given && white_noise::KEYS.contains(&key));
+    let closed = |key: &str| section.has_quietly(key) || (noise_given && white_noise::KEYS.contains(&key));
+    let open = |key: &str| !closed(key);
     let mut fill: Vec<Entry> =
         preset.entries.iter().filter(|entry| open(&entry.key)).filter_map(preset_value).collect();
     fill.extend(mount.filter(|_| open("mount")).cloned());

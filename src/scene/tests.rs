@@ -490,7 +490,8 @@ fn every_key_that_is_listed_is_known() {
         };
         let kind = if table == "[[motion]]" && *key != "kind" { "kind = \"hold\"\n" } else { "" };
         let bad = format!("{table}\n{kind}{key} = true\n");
-        let rest: String = SHORT.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
+        let rest: String =
+            SHORT.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
         let text = if table.is_empty() { bad + &rest } else { rest + &bad };
         let error = Plan::parse(&text, "s.toml", "s", &[]).unwrap_err().to_string();
         assert!(

@@ -23,9 +23,21 @@ pub(super) struct Made {
 struct Stopped;
 
 /// Plays `plan` up to `end` into the ring.
-pub(super) fn produce(plan: &Plan, outputs: &[Output], end: SimTime, ring: Producer<Item>, shared: &Shared) -> Made {
-    let setup = |output: &Output| Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire };
-    let encoders: Vec<_> = outputs.iter().map(|output| wire::encoder(output.to.protocol, &setup(output))).collect();
+pub(super) fn produce(
+    plan: &Plan,
+    outputs: &[Output],
+    end: SimTime,
+    ring: Producer<Item>,
+    shared: &Shared,
+) -> Made {
+    let setup = |output: &Output| Setup {
+        sensors: &plan.sensors,
+        axes: plan.axes,
+        day: plan.day,
+        options: output.wire,
+    };
+    let encoders: Vec<_> =
+        outputs.iter().map(|output| wire::encoder(output.to.protocol, &setup(output))).collect();
     let mut maker = Maker {
         samples: vec![[0; 3]; outputs.len()],
         encoders,

@@ -23,7 +23,8 @@ pub(super) struct SensorTally {
 impl SensorTally {
     pub(super) fn new() -> SensorTally {
         // The bounds are constants that the library accepts; three digits keep percentiles within 0.1 %.
-        let histogram = || Histogram::new_with_bounds(1, LONGEST, 3).unwrap_or_else(|_| unreachable!("constant bounds"));
+        let histogram =
+            || Histogram::new_with_bounds(1, LONGEST, 3).unwrap_or_else(|_| unreachable!("constant bounds"));
         SensorTally {
             sent: 0,
             dropped: 0,
@@ -66,11 +67,27 @@ impl LinkTally {
 
 /// Every sensor's report: counts summed over links, histograms merged; `made` and `queued` are by kind.
 /// `paced` says whether lateness means anything.
-pub(super) fn sensors(plan: &Plan, tallies: &[LinkTally], made: [u64; 3], queued: [u64; 3], paced: bool) -> Vec<SensorReport> {
-    plan.sensors.iter().map(|sensor| report(sensor.kind, sensor.rate.as_hz(), tallies, made, queued, paced)).collect()
+pub(super) fn sensors(
+    plan: &Plan,
+    tallies: &[LinkTally],
+    made: [u64; 3],
+    queued: [u64; 3],
+    paced: bool,
+) -> Vec<SensorReport> {
+    plan.sensors
+        .iter()
+        .map(|sensor| report(sensor.kind, sensor.rate.as_hz(), tallies, made, queued, paced))
+        .collect()
 }
 
-fn report(kind: SensorKind, rate_hz: f64, tallies: &[LinkTally], made: [u64; 3], queued: [u64; 3], paced: bool) -> SensorReport {
+fn report(
+    kind: SensorKind,
+    rate_hz: f64,
+    tallies: &[LinkTally],
+    made: [u64; 3],
+    queued: [u64; 3],
+    paced: bool,
+) -> SensorReport {
     let mut all = SensorTally::new();
     let mut sent_hz = None;
     for tally in tallies.iter().map(|link| &link.sensors[kind as usize]) {

@@ -59,7 +59,11 @@ fn lateness_is_what_the_clock_did_and_everything_is_sent() {
     assert!((late.max - 30.0).abs() < 0.03 && (late.p99 - 30.0).abs() < 0.03, "{late:?}");
     assert!((reports[0].sent_hz.unwrap() - 1000.0).abs() < 0.1);
     assert!((reports[2].sent_hz.unwrap() - 100.0).abs() < 0.01);
-    assert_eq!(far.take().iter().filter(|&&byte| byte == 0).count(), 1000 + 100 + 1, "imu, mag and config packets");
+    assert_eq!(
+        far.take().iter().filter(|&&byte| byte == 0).count(),
+        1000 + 100 + 1,
+        "imu, mag and config packets"
+    );
 }
 
 #[test]
@@ -88,7 +92,10 @@ fn a_reader_that_stops_and_resumes_costs_exactly_what_is_counted() {
     assert!(tally.dropped > 0 && tally.packets > 100, "{} dropped of {}", tally.dropped, tally.packets);
     let there = far.take().len() + pacer.senders[0].kept();
     assert_eq!(there as u64, tally.bytes, "what was counted as sent is there");
-    assert_eq!(shared.dropped.load(Ordering::Relaxed), tally.sensors.iter().map(|sensor| sensor.dropped).sum::<u64>());
+    assert_eq!(
+        shared.dropped.load(Ordering::Relaxed),
+        tally.sensors.iter().map(|sensor| sensor.dropped).sum::<u64>()
+    );
 }
 
 #[test]
@@ -113,7 +120,9 @@ fn a_link_that_goes_away_ends_the_run_and_the_rest_counts_as_queued() {
 #[test]
 fn samples_that_newer_ones_replace_are_counted_as_dropped() {
     let (plan, shared) = (
-        plan("duration = \"1 s\"\n[gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"7 Hz\"\n"),
+        plan(
+            "duration = \"1 s\"\n[gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"7 Hz\"\n",
+        ),
         Shared::default(),
     );
     let (ring, made) = made(&plan, "mavlink@pty", &shared);
@@ -128,7 +137,9 @@ fn samples_that_newer_ones_replace_are_counted_as_dropped() {
 
 #[test]
 fn the_pacing_thread_allocates_nothing() {
-    for (to, speed) in [("mpu@pty", Speed::Times(1.0)), ("mavlink@pty", Speed::Max), ("csv@pty", Speed::Times(2.0))] {
+    for (to, speed) in
+        [("mpu@pty", Speed::Times(1.0)), ("mavlink@pty", Speed::Max), ("csv@pty", Speed::Times(2.0))]
+    {
         let (plan, shared) = (plan(SCENE), Shared::default());
         let (ring, _) = made(&plan, to, &shared);
         let file = tempfile::NamedTempFile::new().unwrap();
@@ -162,13 +173,18 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
         let outcome = run(job, &mut |_| {}).unwrap();
         assert_eq!(outcome.played, plan.duration);
         for block in [1, 7, 4096] {
-            assert_eq!(std::fs::read(&path).unwrap(), encoded(&plan, protocol, block), "{protocol}, blocks of {block}");
+            assert_eq!(
+                std::fs::read(&path).unwrap(),
+                encoded(&plan, protocol, block),
+                "{protocol}, blocks of {block}"
+            );
         }
     }
 }
 
 fn encoded(plan: &Plan, protocol: &str, block: usize) -> Vec<u8> {
-    let setup = Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: wire::Options::default() };
+    let setup =
+        Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: wire::Options::default() };
     let mut encoder = wire::encoder(Protocol::from_name(protocol).unwrap(), &setup);
     let mut packets = Vec::new();
     let played = Player::new(plan, plan.duration, block).play(|moment| {

@@ -1,8 +1,6 @@
 //! Packets out of a stream of bytes, however it is cut up.
 
-use super::{
-    CRC_LEN, Header, MAX_LEN, Message, Received, SIGNATURE_LEN, Version, checksum, crc_extra,
-};
+use super::{CRC_LEN, Header, MAX_LEN, Message, Received, SIGNATURE_LEN, Version, checksum, crc_extra};
 use crate::bytes;
 use crate::error::Error;
 
@@ -51,11 +49,7 @@ impl Default for Decoder {
 impl Decoder {
     /// A decoder that holds nothing.
     pub const fn new() -> Self {
-        Self {
-            held: [0; HELD_LEN],
-            len: 0,
-            in_step: true,
-        }
+        Self { held: [0; HELD_LEN], len: 0, in_step: true }
     }
 
     /// Takes more of the stream and calls `on` with each packet that it completes.
@@ -99,11 +93,7 @@ impl Decoder {
     /// Says what the first held byte starts.
     fn judge(&self, at_end: bool) -> Verdict {
         let held = &self.held[..self.len];
-        let short = if at_end {
-            Verdict::Not(Error::Malformed)
-        } else {
-            Verdict::Wait
-        };
+        let short = if at_end { Verdict::Not(Error::Malformed) } else { Verdict::Wait };
         let start = match start(held) {
             Ok(Some(start)) => start,
             Ok(None) => return short,
@@ -125,9 +115,7 @@ impl Decoder {
     /// Drops the first byte and all up to the next that may start a packet.
     fn drop_false_start(&mut self) {
         let rest = &self.held[1..self.len];
-        let skip = rest
-            .iter()
-            .position(|&byte| Version::from_magic(byte).is_some());
+        let skip = rest.iter().position(|&byte| Version::from_magic(byte).is_some());
         self.drop_front(skip.map_or(self.len, |skip| skip + 1));
     }
 
@@ -146,30 +134,18 @@ fn start(held: &[u8]) -> Result<Option<Start>, Error> {
         (Version::V1, &[_, len, seq, system, component, id, ..]) => {
             (len, 0, [seq, system, component], u32::from(id))
         }
-        (Version::V2, &[_, len, flags, _, seq, system, component, a, b, c, ..]) => (
-            len,
-            flags,
-            [seq, system, component],
-            u32::from_le_bytes([a, b, c, 0]),
-        ),
+        (Version::V2, &[_, len, flags, _, seq, system, component, a, b, c, ..]) => {
+            (len, flags, [seq, system, component], u32::from_le_bytes([a, b, c, 0]))
+        }
         _ => return Ok(None),
     };
     if flags & !SIGNED != 0 {
         return Err(Error::Malformed);
     }
     let crc_at = version.header_len() + usize::from(len);
-    let signature = if flags & SIGNED == 0 {
-        0
-    } else {
-        SIGNATURE_LEN
-    };
+    let signature = if flags & SIGNED == 0 { 0 } else { SIGNATURE_LEN };
     Ok(Some(Start {
-        header: Header {
-            version,
-            seq,
-            system,
-            component,
-        },
+        header: Header { version, seq, system, component },
         id,
         crc_at,
         end: crc_at + CRC_LEN + signature,
@@ -201,11 +177,7 @@ fn unchecked(start: &Start, following: Option<&u8>, at_end: bool) -> Verdict {
 impl Start {
     /// The whole packet, given its message.
     const fn received(&self, message: Option<Message>) -> Received {
-        Received {
-            header: self.header,
-            id: self.id,
-            message,
-        }
+        Received { header: self.header, id: self.id, message }
     }
 }
 
@@ -218,21 +190,13 @@ mod tests {
     const UNKNOWN: [u8; 14] = [0xfd, 2, 0, 0, 9, 1, 1, 0xff, 0xff, 0, 7, 8, 0x12, 0x34];
 
     fn two_packets(version: Version, out: &mut [u8; 2 * MAX_LEN]) -> (usize, usize) {
-        let header = |seq| Header {
-            version,
-            seq,
-            system: 1,
-            component: 2,
-        };
+        let header = |seq| Header { version, seq, system: 1, component: 2 };
         let beat = Message::Heartbeat(heartbeat::Repr {
             custom_mode: 0xfe_fd,
             mavlink_version: 3,
             ..Default::default()
         });
-        let time = Message::SystemTime(system_time::Repr {
-            time_unix_usec: 0,
-            time_boot_ms: 77,
-        });
+        let time = Message::SystemTime(system_time::Repr { time_unix_usec: 0, time_boot_ms: 77 });
         let first = encode(&header(0), &beat, out).unwrap();
         let second = encode(&header(1), &time, &mut out[first..]).unwrap();
         (first, first + second)

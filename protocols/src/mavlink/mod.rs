@@ -212,9 +212,7 @@ pub fn encode(header: &Header, message: &Message, out: &mut [u8]) -> Result<usiz
     };
     let crc_at = header.version.header_len() + payload.len();
     let needed = crc_at + CRC_LEN;
-    let packet = out
-        .get_mut(..needed)
-        .ok_or(Error::BufferTooSmall { needed })?;
+    let packet = out.get_mut(..needed).ok_or(Error::BufferTooSmall { needed })?;
     put_header(header, message.id(), payload.len() as u8, packet)?;
     packet[header.version.header_len()..crc_at].copy_from_slice(payload);
     let extra = crc_extra(message.id()).unwrap_or_default();
@@ -231,12 +229,7 @@ fn cut_zeros(payload: &[u8]) -> &[u8] {
 
 /// Writes what comes before the payload.
 fn put_header(header: &Header, id: u32, len: u8, packet: &mut [u8]) -> Result<(), Error> {
-    let &Header {
-        version,
-        seq,
-        system,
-        component,
-    } = header;
+    let &Header { version, seq, system, component } = header;
     let magic = version.magic();
     match version {
         Version::V1 => {

@@ -73,10 +73,7 @@ pub struct Repr {
 impl Repr {
     /// Reads every field of a view.
     pub fn parse<T: AsRef<[u8]>>(payload: &Payload<T>) -> Self {
-        Self {
-            time_unix_usec: payload.time_unix_usec(),
-            time_boot_ms: payload.time_boot_ms(),
-        }
+        Self { time_unix_usec: payload.time_unix_usec(), time_boot_ms: payload.time_boot_ms() }
     }
 
     /// Bytes that [`emit`](Self::emit) writes.
@@ -95,15 +92,10 @@ impl Repr {
 mod tests {
     use super::*;
 
-    const GOLDEN: [u8; LEN] = [
-        0x40, 0x22, 0x20, 0x18, 0x24, 0x0a, 0x06, 0x00, 0xcd, 0x81, 0x01, 0x00,
-    ];
+    const GOLDEN: [u8; LEN] = [0x40, 0x22, 0x20, 0x18, 0x24, 0x0a, 0x06, 0x00, 0xcd, 0x81, 0x01, 0x00];
 
     fn repr() -> Repr {
-        Repr {
-            time_unix_usec: 1700000000123456,
-            time_boot_ms: 98765,
-        }
+        Repr { time_unix_usec: 1700000000123456, time_boot_ms: 98765 }
     }
 
     #[test]

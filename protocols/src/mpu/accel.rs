@@ -56,9 +56,7 @@ pub struct Repr {
 impl Repr {
     /// Reads every field of a view.
     pub fn parse<T: AsRef<[u8]>>(payload: &Payload<T>) -> Self {
-        Self {
-            accel: payload.accel(),
-        }
+        Self { accel: payload.accel() }
     }
 
     /// Bytes that [`emit`](Self::emit) writes.
@@ -79,9 +77,7 @@ mod tests {
     const GOLDEN: [u8; LEN] = [0x00, 0x00, 0x00, 0x00, 0x40, 0x00];
 
     fn repr() -> Repr {
-        Repr {
-            accel: [0, 0, 16384],
-        }
+        Repr { accel: [0, 0, 16384] }
     }
 
     #[test]

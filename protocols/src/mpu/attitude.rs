@@ -70,10 +70,7 @@ pub struct Repr {
 impl Repr {
     /// Reads every field of a view.
     pub fn parse<T: AsRef<[u8]>>(payload: &Payload<T>) -> Self {
-        Self {
-            clock_us: payload.clock_us(),
-            q: payload.q(),
-        }
+        Self { clock_us: payload.clock_us(), q: payload.q() }
     }
 
     /// Bytes that [`emit`](Self::emit) writes.
@@ -93,15 +90,12 @@ mod tests {
     use super::*;
 
     const GOLDEN: [u8; LEN] = [
-        0x40, 0xe2, 0x01, 0x00, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x00, 0xbf, 0x00, 0x00, 0x00,
-        0x3f, 0x00, 0x00, 0x00, 0x3f,
+        0x40, 0xe2, 0x01, 0x00, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x00, 0xbf, 0x00, 0x00, 0x00, 0x3f, 0x00,
+        0x00, 0x00, 0x3f,
     ];
 
     fn repr() -> Repr {
-        Repr {
-            clock_us: 123456,
-            q: [0.5, -0.5, 0.5, 0.5],
-        }
+        Repr { clock_us: 123456, q: [0.5, -0.5, 0.5, 0.5] }
     }
 
     #[test]

@@ -27,11 +27,7 @@ impl Default for Decoder {
 impl Decoder {
     /// A decoder that holds nothing.
     pub const fn new() -> Self {
-        Self {
-            held: [0; HELD_LEN],
-            len: 0,
-            overlong: false,
-        }
+        Self { held: [0; HELD_LEN], len: 0, overlong: false }
     }
 
     /// Takes more of the stream and calls `on` with each packet that it completes.
@@ -63,11 +59,7 @@ impl Decoder {
     fn close(&mut self, on: &mut impl FnMut(Result<Received, Error>)) {
         let stuffed = &self.held[..self.len];
         if !stuffed.is_empty() {
-            let whole = if self.overlong {
-                Err(Error::Malformed)
-            } else {
-                decode(stuffed)
-            };
+            let whole = if self.overlong { Err(Error::Malformed) } else { decode(stuffed) };
             on(whole);
             if whole.is_err()
                 && let Some(last) = salvage(stuffed)

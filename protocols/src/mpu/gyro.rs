@@ -56,9 +56,7 @@ pub struct Repr {
 impl Repr {
     /// Reads every field of a view.
     pub fn parse<T: AsRef<[u8]>>(payload: &Payload<T>) -> Self {
-        Self {
-            gyro: payload.gyro(),
-        }
+        Self { gyro: payload.gyro() }
     }
 
     /// Bytes that [`emit`](Self::emit) writes.
@@ -79,9 +77,7 @@ mod tests {
     const GOLDEN: [u8; LEN] = [0x00, 0x01, 0xff, 0xfe, 0x80, 0x00];
 
     fn repr() -> Repr {
-        Repr {
-            gyro: [1, -2, -32768],
-        }
+        Repr { gyro: [1, -2, -32768] }
     }
 
     #[test]

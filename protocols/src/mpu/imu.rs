@@ -83,11 +83,7 @@ pub struct Repr {
 impl Repr {
     /// Reads every field of a view.
     pub fn parse<T: AsRef<[u8]>>(payload: &Payload<T>) -> Self {
-        Self {
-            accel: payload.accel(),
-            temperature: payload.temperature(),
-            gyro: payload.gyro(),
-        }
+        Self { accel: payload.accel(), temperature: payload.temperature(), gyro: payload.gyro() }
     }
 
     /// Bytes that [`emit`](Self::emit) writes.
@@ -107,16 +103,11 @@ impl Repr {
 mod tests {
     use super::*;
 
-    const GOLDEN: [u8; LEN] = [
-        0xc0, 0x00, 0x04, 0xd2, 0x3f, 0xff, 0xfd, 0xf7, 0x00, 0x83, 0xfe, 0xfa, 0x7f, 0xff,
-    ];
+    const GOLDEN: [u8; LEN] =
+        [0xc0, 0x00, 0x04, 0xd2, 0x3f, 0xff, 0xfd, 0xf7, 0x00, 0x83, 0xfe, 0xfa, 0x7f, 0xff];
 
     fn repr() -> Repr {
-        Repr {
-            accel: [-16384, 1234, 16383],
-            temperature: -521,
-            gyro: [131, -262, 32767],
-        }
+        Repr { accel: [-16384, 1234, 16383], temperature: -521, gyro: [131, -262, 32767] }
     }
 
     #[test]

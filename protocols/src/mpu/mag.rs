@@ -85,11 +85,7 @@ pub struct Repr {
 impl Repr {
     /// Reads every field of a view.
     pub fn parse<T: AsRef<[u8]>>(payload: &Payload<T>) -> Self {
-        Self {
-            st1: payload.st1(),
-            field: payload.field(),
-            st2: payload.st2(),
-        }
+        Self { st1: payload.st1(), field: payload.field(), st2: payload.st2() }
     }
 
     /// Bytes that [`emit`](Self::emit) writes.
@@ -112,11 +108,7 @@ mod tests {
     const GOLDEN: [u8; LEN] = [0x01, 0x7b, 0x00, 0x38, 0xfe, 0x08, 0x80, 0x10];
 
     fn repr() -> Repr {
-        Repr {
-            st1: 1,
-            field: [123, -456, -32760],
-            st2: 16,
-        }
+        Repr { st1: 1, field: [123, -456, -32760], st2: 16 }
     }
 
     #[test]

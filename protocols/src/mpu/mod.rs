@@ -172,9 +172,7 @@ pub fn encode(seq: u8, t_us: u32, packet: &Packet, out: &mut [u8]) -> Result<usi
 pub fn decode(stuffed: &[u8]) -> Result<Received, Error> {
     let mut body = [0; MAX_BODY_LEN];
     let len = cobs::decode(stuffed, &mut body).map_err(|_| Error::Malformed)?;
-    let payload_len = len
-        .checked_sub(HEADER_LEN + CRC_LEN)
-        .ok_or(Error::Malformed)?;
+    let payload_len = len.checked_sub(HEADER_LEN + CRC_LEN).ok_or(Error::Malformed)?;
     let crc_at = HEADER_LEN + payload_len;
     if CRC.checksum(&body[..crc_at]) != bytes::le::<u16>(&body, crc_at..len) {
         return Err(Error::Checksum);

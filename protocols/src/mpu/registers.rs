@@ -163,15 +163,9 @@ mod tests {
         let scales = [0, 1, 2, 3].map(full_scale_bits);
         assert_eq!(scales, [0x00, 0x08, 0x10, 0x18]);
         assert_eq!(scales.map(gyro_lsb_per_dps), [131.0, 65.5, 32.8, 16.4]);
-        assert_eq!(
-            scales.map(accel_lsb_per_g),
-            [16384.0, 8192.0, 4096.0, 2048.0]
-        );
+        assert_eq!(scales.map(accel_lsb_per_g), [16384.0, 8192.0, 4096.0, 2048.0]);
         assert_eq!(scales.map(accel_full_scale_g), [2.0, 4.0, 8.0, 16.0]);
-        assert_eq!(
-            scales.map(gyro_full_scale_dps),
-            [250.0, 500.0, 1000.0, 2000.0]
-        );
+        assert_eq!(scales.map(gyro_full_scale_dps), [250.0, 500.0, 1000.0, 2000.0]);
         assert_eq!(gyro_lsb_per_dps(0xe7), 131.0, "self-test bits do not count");
     }
 
@@ -206,9 +200,6 @@ mod tests {
     #[test]
     fn the_magnetometers_axes_are_turned_and_turned_back() {
         assert_eq!(swap_mag_axes([1.0, 2.0, 3.0]), [2.0, 1.0, -3.0]);
-        assert_eq!(
-            swap_mag_axes(swap_mag_axes([1.0, 2.0, 3.0])),
-            [1.0, 2.0, 3.0]
-        );
+        assert_eq!(swap_mag_axes(swap_mag_axes([1.0, 2.0, 3.0])), [1.0, 2.0, 3.0]);
     }
 }

@@ -26,26 +26,17 @@ pub fn vectors(format: &str) -> Vec<Vector> {
     let path = format!("{}/vectors/{format}.json", env!("CARGO_MANIFEST_DIR"));
     let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     let packets = file["packets"].as_array().unwrap().iter().cloned();
-    packets
-        .map(|json| Vector {
-            bytes: unhex(json["hex"].as_str().unwrap()),
-            json,
-        })
-        .collect()
+    packets.map(|json| Vector { bytes: unhex(json["hex"].as_str().unwrap()), json }).collect()
 }
 
 fn unhex(hex: &str) -> Vec<u8> {
     let digits = hex.as_bytes().chunks(2);
-    digits
-        .map(|pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap())
-        .collect()
+    digits.map(|pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap()).collect()
 }
 
 /// An integer of the JSON, whatever its type.
 pub fn int<T: TryFrom<i64>>(value: &Value) -> T {
-    let int = value
-        .as_i64()
-        .unwrap_or_else(|| panic!("{value} is not an integer"));
+    let int = value.as_i64().unwrap_or_else(|| panic!("{value} is not an integer"));
     T::try_from(int).unwrap_or_else(|_| panic!("{value} does not fit"))
 }
 
@@ -70,17 +61,11 @@ pub fn mpu_packet(json: &Value) -> Packet {
             temperature: int(&f["temperature"]),
             gyro: ints(&f["gyro"]),
         }),
-        "mag" => Packet::Mag(mpu::mag::Repr {
-            st1: int(&f["st1"]),
-            field: ints(&f["field"]),
-            st2: int(&f["st2"]),
-        }),
-        "gyro" => Packet::Gyro(mpu::gyro::Repr {
-            gyro: ints(&f["gyro"]),
-        }),
-        "accel" => Packet::Accel(mpu::accel::Repr {
-            accel: ints(&f["accel"]),
-        }),
+        "mag" => {
+            Packet::Mag(mpu::mag::Repr { st1: int(&f["st1"]), field: ints(&f["field"]), st2: int(&f["st2"]) })
+        }
+        "gyro" => Packet::Gyro(mpu::gyro::Repr { gyro: ints(&f["gyro"]) }),
+        "accel" => Packet::Accel(mpu::accel::Repr { accel: ints(&f["accel"]) }),
         "config" => Packet::Config(mpu::config::Repr {
             who_am_i: int(&f["who_am_i"]),
             smplrt_div: int(&f["smplrt_div"]),
@@ -91,10 +76,9 @@ pub fn mpu_packet(json: &Value) -> Packet {
             cntl1: int(&f["cntl1"]),
             asa: ints(&f["asa"]),
         }),
-        "attitude" => Packet::Attitude(mpu::attitude::Repr {
-            clock_us: int(&f["clock_us"]),
-            q: floats(&f["q"]),
-        }),
+        "attitude" => {
+            Packet::Attitude(mpu::attitude::Repr { clock_us: int(&f["clock_us"]), q: floats(&f["q"]) })
+        }
         other => panic!("no packet type {other}"),
     }
 }
