@@ -13,6 +13,7 @@ mod range;
 mod resolution;
 pub mod white_noise;
 
+pub use bias::settle as settle_bias;
 pub use mount::Mount;
 pub use resolution::lsb;
 

@@ -2,9 +2,11 @@
 
 use super::document::{Node, Table, Value};
 use super::section::Section;
+use crate::geometry::Vector;
 use crate::keys::{self, Key, Takes};
 use crate::quantity::{self, Kind, Sign};
 use crate::random::{self, Stream};
+use crate::sensor::{self, SensorPlan};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -52,6 +54,19 @@ impl Section<'_> {
             Takes::Scalar(_) => keys::Value::Scalar(drawn[0].into()),
             _ => keys::Value::Triple([drawn[0], drawn[1] * sign, drawn[2] * sign].map(Into::into)),
         })
+    }
+
+    /// A turn-on bias with a spread is drawn here, once a run, so that the scene as resolved says what it is.
+    pub(super) fn settle_bias(&self, plan: &mut SensorPlan) {
+        let context = plan.context(self.seed());
+        let Some(bias) = sensor::settle_bias(&mut plan.values, &context) else { return };
+        let text = quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), plan.kind.unit());
+        self.reader
+            .draws
+            .borrow_mut()
+            .push(Drawn { key: format!("{}.bias", self.path), value: text.clone() });
+        self.resolve("bias", text);
+        self.resolve("bias_std", format!("0 {}", plan.kind.unit()));
     }
 
     fn distribution(

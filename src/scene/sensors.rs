@@ -59,7 +59,8 @@ fn sensor(
         return None;
     }
     let any_rate = rate.unwrap_or(Rate::hz(1));
-    let plan = SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values };
+    let mut plan = SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values };
+    section.settle_bias(&mut plan);
     let errors = sensor::check(&plan, seed);
     for error in &errors {
         section.mistake(error.key, &error.message);
@@ -101,8 +102,8 @@ fn mount(section: &Section<'_>) -> Option<Mount> {
 /// Fills a section from the part it names; keys beside `part` override it.
 fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'static str> {
     let name = section.text("part", None)?;
-    let Some(part) = parts::find(&name) else {
-        let names: Vec<_> = parts::all().iter().flat_map(|part| part.names.iter().copied()).collect();
+    let Some(part) = parts::find(&name, kind) else {
+        let names: Vec<_> = parts::names(kind).collect();
         let near = suggest::did_you_mean(&name, names.iter().copied());
         section
             .mistake("part", format!("`{name}` is no part known here; there are {}{near}", names.join(", ")));

@@ -1,7 +1,8 @@
 //! Turn-on bias: fixed, or drawn once a run.
 
-use super::{Block, Stage, Term, TermKind};
-use crate::keys::{Key, Takes};
+use super::{Block, Context, Stage, Term, TermKind};
+use crate::double::Double;
+use crate::keys::{Key, Takes, Value, Values};
 use crate::quantity::Sign;
 use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
@@ -27,19 +28,27 @@ pub(super) static KIND: TermKind = TermKind {
             },
         ]
     },
-    build: |values, context| {
-        let mut bias = values.vector("bias").unwrap_or_default();
-        let spread = values.vector("bias_std").unwrap_or_default();
-        let mut streams = context.streams("bias");
-        for axis in 0..3 {
-            let draw: f64 = StandardNormal.sample(&mut streams[axis]);
-            if spread[axis] != 0.0 {
-                bias[axis] += spread[axis] * draw;
-            }
-        }
+    build: |values, _| {
+        let bias = values.vector("bias").unwrap_or_default();
         Ok((bias != DVec3::ZERO).then(|| Box::new(Bias(bias)) as Box<dyn Term>))
     },
 };
+
+/// Draws the turn-on bias of a run: `bias` becomes what was drawn, in body axes and the reading's unit, and
+/// `bias_std` zero. `None`, with nothing changed, where no spread is given.
+pub fn settle(values: &mut Values, context: &Context) -> Option<DVec3> {
+    let spread = values.vector("bias_std").filter(|spread| *spread != DVec3::ZERO)?;
+    let mut bias = values.vector("bias").unwrap_or_default();
+    let mut streams = context.streams("bias");
+    for axis in (0..3).filter(|&axis| spread[axis] != 0.0) {
+        let draw: f64 = StandardNormal.sample(&mut streams[axis]);
+        bias[axis] += spread[axis] * draw;
+    }
+    let triple = |v: DVec3| Value::Triple(v.to_array().map(Double::from));
+    values.insert("bias", triple(bias));
+    values.insert("bias_std", triple(DVec3::ZERO));
+    Some(bias)
+}
 
 struct Bias(DVec3);
 

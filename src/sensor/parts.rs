@@ -7,6 +7,8 @@ use super::SensorKind;
 pub struct Part {
     /// Its name, then others for the same data.
     pub names: &'static [&'static str],
+    /// Names of the parts inside it, each for one sensor alone.
+    pub inside: &'static [(&'static str, SensorKind)],
     /// One line about it.
     pub about: &'static str,
     /// What messages call the file.
@@ -31,12 +33,14 @@ pub struct Sourced {
 static PARTS: [Part; 2] = [
     Part {
         names: &["MPU-6050", "MPU-6000"],
+        inside: &[],
         about: "six axes, TDK InvenSense",
         file: "parts/mpu-6050.toml",
         text: include_str!("parts/mpu-6050.toml"),
     },
     Part {
-        names: &["MPU-9250", "AK8963"],
+        names: &["MPU-9250"],
+        inside: &[("AK8963", SensorKind::Mag)],
         about: "nine axes, TDK InvenSense, with AKM's AK8963 magnetometer inside",
         file: "parts/mpu-9250.toml",
         text: include_str!("parts/mpu-9250.toml"),
@@ -48,7 +52,15 @@ pub fn all() -> &'static [Part] {
     &PARTS
 }
 
-/// The part of that name, whatever its case.
-pub fn find(name: &str) -> Option<&'static Part> {
-    PARTS.iter().find(|part| part.names.iter().any(|known| known.eq_ignore_ascii_case(name)))
+/// The part of that name for a sensor of this kind, whatever the name's case.
+pub fn find(name: &str, sensor: SensorKind) -> Option<&'static Part> {
+    let is = |known: &str| known.eq_ignore_ascii_case(name);
+    let inside = |part: &Part| part.inside.iter().any(|(known, kind)| *kind == sensor && is(known));
+    PARTS.iter().find(|part| part.names.iter().any(|known| is(known)) || inside(part))
+}
+
+/// Every name by which a sensor of this kind may ask for a part.
+pub fn names(sensor: SensorKind) -> impl Iterator<Item = &'static str> {
+    let inside = move |part: &'static Part| part.inside.iter().filter(move |(_, kind)| *kind == sensor);
+    PARTS.iter().flat_map(move |part| part.names.iter().copied().chain(inside(part).map(|(name, _)| *name)))
 }
