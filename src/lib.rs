@@ -30,5 +30,6 @@ pub mod random;
 pub mod scene;
 pub mod schedule;
 pub mod sensor;
+pub mod study;
 pub mod time;
 pub mod wire;
