@@ -36,5 +36,6 @@ pub mod schedule;
 pub mod score;
 pub mod sensor;
 pub mod session;
+pub mod study;
 pub mod time;
 pub mod wire;

@@ -7,6 +7,7 @@
 mod circle;
 mod cone;
 mod hold;
+pub mod method;
 mod rotate;
 mod trajectory;
 

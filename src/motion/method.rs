@@ -1,0 +1,238 @@
+//! Ways to step attitude from samples of angular rate, or from its integrals: one file a method.
+//!
+//! A method is a formula over plain numbers: the attitude before the step, the step's length, and the inputs it
+//! declares ([`Input`]). It has no clock, no memory and no I/O. What surrounds every formula is the same for all
+//! ([`MethodKind::run`]): a step that is not positive and finite, an input or an attitude that is not finite, and a
+//! result beyond the range of the precision are refused with the reason, so that no NaN ever spreads.
+//!
+//! Rates and increments are in body axes, rad/s and rad; `q` takes body to nav, so that a turn multiplies from
+//! the right. None of these methods makes our truth: they are there to be compared with it, see
+//! [`study`](crate::study). To add one: a file beside these and a line in [`METHODS`].
+
+mod algebra;
+mod coning_2;
+mod coning_3;
+mod coning_4;
+mod crouch_grossman_3;
+mod ecompass;
+mod euler;
+mod exp_average;
+mod exp_midpoint;
+mod increment_1;
+mod magnus_4;
+mod paper;
+mod paper_normalised;
+mod polynomial_fit;
+mod real;
+mod reference;
+mod rk4;
+mod rkmk_4;
+
+pub use algebra::{Quaternion, Triple};
+pub use coning_2::Coning2;
+pub use coning_3::Coning3;
+pub use coning_4::Coning4;
+pub use crouch_grossman_3::CrouchGrossman3;
+pub use ecompass::{Degenerate, ecompass};
+pub use euler::Euler;
+pub use exp_average::ExpAverage;
+pub use exp_midpoint::ExpMidpoint;
+pub use increment_1::Increment1;
+pub use magnus_4::Magnus4;
+pub use paper::Paper;
+pub use paper_normalised::PaperNormalised;
+pub use polynomial_fit::PolynomialFit;
+pub use real::Real;
+pub use reference::{ReferenceError, from_accel_mag, reference};
+pub use rk4::Rk4;
+pub use rkmk_4::Rkmk4;
+
+/// Every method: first from samples of rate, then from exact increments, each group by order.
+pub static METHODS: [&MethodKind; 14] = [
+    &euler::KIND,
+    &paper::KIND,
+    &paper_normalised::KIND,
+    &exp_average::KIND,
+    &exp_midpoint::KIND,
+    &crouch_grossman_3::KIND,
+    &rk4::KIND,
+    &rkmk_4::KIND,
+    &magnus_4::KIND,
+    &increment_1::KIND,
+    &coning_2::KIND,
+    &coning_3::KIND,
+    &coning_4::KIND,
+    &polynomial_fit::KIND,
+];
+
+/// The method called `name`.
+pub fn find(name: &str) -> Option<&'static MethodKind> {
+    METHODS.into_iter().find(|method| method.name == name)
+}
+
+/// A formula that takes attitude over one step from `N` inputs.
+pub trait Method<const N: usize> {
+    /// The attitude after a step of `h` seconds that starts at `q`. Everything in it is finite, and `h` positive.
+    fn turn<R: Real>(q: Quaternion<R>, h: R, inputs: &[Triple<R>; N]) -> Quaternion<R>;
+}
+
+/// What a method reads for one step, in this order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Input {
+    /// The angular rate (rad/s) at these fractions of the step, which lasts from one sample to the next.
+    Rate(&'static [f64]),
+    /// Integrals of the angular rate (rad) over so many samples' intervals, which together make one step.
+    Increments(usize),
+}
+
+impl Input {
+    /// How many vectors one step reads.
+    pub const fn count(self) -> usize {
+        match self {
+            Input::Rate(fractions) => fractions.len(),
+            Input::Increments(count) => count,
+        }
+    }
+
+    /// How many of a sensor's samples one step goes forward.
+    pub const fn samples(self) -> usize {
+        match self {
+            Input::Rate(_) => 1,
+            Input::Increments(count) => count,
+        }
+    }
+}
+
+/// The numbers a method is computed in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// Double, `f64`.
+    Double,
+    /// Single, `f32`: what a small flight controller has.
+    Single,
+}
+
+/// Compared in double precision only.
+const DOUBLE: &[Precision] = &[Precision::Double];
+/// Compared in single precision too: cheap enough for a part without doubles.
+const BOTH: &[Precision] = &[Precision::Double, Precision::Single];
+
+/// Many steps in one call: attitude, step, the inputs of one step after another.
+pub type Run<R> = fn(Quaternion<R>, R, &[Triple<R>]) -> Result<Quaternion<R>, Refused>;
+
+/// A method: its name, what it reads and how it is run.
+#[derive(Debug)]
+pub struct MethodKind {
+    /// As in `method = "…"`.
+    pub name: &'static str,
+    /// One line for `list methods`.
+    pub about: &'static str,
+    /// The power of the step with which its error at a fixed time falls, on smooth motion.
+    pub order: u32,
+    /// What it reads for one step.
+    pub input: Input,
+    /// What the accuracy study compares it in. It runs in either.
+    pub precisions: &'static [Precision],
+    double: Run<f64>,
+    single: Run<f32>,
+}
+
+impl MethodKind {
+    const fn of<M: Method<N>, const N: usize>(
+        name: &'static str,
+        about: &'static str,
+        order: u32,
+        input: Input,
+        precisions: &'static [Precision],
+    ) -> MethodKind {
+        assert!(input.count() == N);
+        MethodKind {
+            name,
+            about,
+            order,
+            input,
+            precisions,
+            double: run::<M, f64, N>,
+            single: run::<M, f32, N>,
+        }
+    }
+
+    /// Steps `q` by `h` seconds over and over, each time with the next [`count`](Input::count) of `inputs`; or
+    /// says at which step it was refused, and why.
+    pub fn run<R: Real>(
+        &self,
+        q: Quaternion<R>,
+        h: R,
+        inputs: &[Triple<R>],
+    ) -> Result<Quaternion<R>, Refused> {
+        R::runner(self)(q, h, inputs)
+    }
+}
+
+fn run<M: Method<N>, R: Real, const N: usize>(
+    start: Quaternion<R>,
+    h: R,
+    inputs: &[Triple<R>],
+) -> Result<Quaternion<R>, Refused> {
+    let (steps, rest) = inputs.as_chunks::<N>();
+    let refuse = |step: usize, why| Err(Refused { step: step as u64, why });
+    match () {
+        () if !rest.is_empty() || steps.is_empty() => return refuse(steps.len(), Why::InputMissing),
+        () if !h.is_finite() => return refuse(0, Why::StepNotFinite),
+        () if h <= R::of(0.0) => return refuse(0, Why::StepNotPositive),
+        () if !start.is_finite() => return refuse(0, Why::AttitudeNotFinite),
+        () if start.is_null() => return refuse(0, Why::AttitudeZero),
+        () => {}
+    }
+    let mut q = start;
+    for (step, inputs) in steps.iter().enumerate() {
+        if !inputs.iter().all(|input| input.is_finite()) {
+            return refuse(step, Why::InputNotFinite);
+        }
+        q = M::turn(q, h, inputs);
+        // Renormalising what is too long to have a norm gives a null quaternion.
+        if !q.is_finite() || q.is_null() {
+            return refuse(step, Why::Overflow);
+        }
+    }
+    Ok(q)
+}
+
+/// A step that was not made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("step {step} refused: {why}")]
+pub struct Refused {
+    /// Which of the steps asked for, from 0; those before it were good.
+    pub step: u64,
+    /// What is wrong with it.
+    pub why: Why,
+}
+
+/// Why a step is not made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Why {
+    /// Zero or negative.
+    #[error("the step's length is not above zero")]
+    StepNotPositive,
+    /// Infinite or NaN.
+    #[error("the step's length is not a finite number")]
+    StepNotFinite,
+    /// A rate or an increment is infinite or NaN.
+    #[error("an input is not a finite number")]
+    InputNotFinite,
+    /// No input, or not a whole number of steps' inputs.
+    #[error("the inputs do not make a whole number of steps")]
+    InputMissing,
+    /// The attitude to start from is infinite or NaN.
+    #[error("the attitude is not finite")]
+    AttitudeNotFinite,
+    /// The attitude to start from is the null quaternion.
+    #[error("the attitude is null")]
+    AttitudeZero,
+    /// The inputs are good, but the result is beyond the largest number of the precision.
+    #[error("the result is beyond the range of numbers")]
+    Overflow,
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,12 @@
+//! Every method against every motion: how accurate, at what cost, and where it fails.
+//!
+//! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
+//! [`stability`] tries what breaks methods. Both give rows for a table; time comes in as an argument.
+
+pub mod accuracy;
+mod inputs;
+pub mod motions;
+mod parallel;
+pub mod stability;
+
+pub use parallel::all_cores;
