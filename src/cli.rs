@@ -7,6 +7,7 @@ mod list;
 mod options;
 mod progress;
 mod run;
+mod study;
 mod summary;
 
 use clap::{Parser, Subcommand};
@@ -29,7 +30,9 @@ enum Command {
     Generate(generate::Arguments),
     /// Read a scene and show the plan: sensors, noise, bytes a second, warnings
     Check(check::Arguments),
-    /// Show what there is: scenes, parts, motions, protocols, links, ports
+    /// Compare the attitude methods: error against cost on many motions, and what breaks each
+    Study(study::Arguments),
+    /// Show what there is: scenes, parts, motions, methods, protocols, links, ports
     List(list::Arguments),
 }
 
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Generate(arguments) => generate::generate(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Study(arguments) => study::study(&arguments),
         Command::List(arguments) => list::list(&arguments),
     };
     match verdict {

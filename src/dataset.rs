@@ -6,6 +6,7 @@
 //! manifest.json   version, seed, columns with units, counts, checksums
 //! truth.csv       at every distinct tick of any sensor
 //! gyro.csv accel.csv mag.csv      one for each sensor that the scene has
+//! reference.csv   attitude as a method computes it, where the scene asks for it
 //! estimate.csv    what the other side answered, where it did
 //! ```
 //!
@@ -20,6 +21,7 @@ mod format;
 mod manifest;
 pub mod read;
 mod readme;
+mod reference;
 mod table;
 
 pub use error::DatasetError;
@@ -27,6 +29,7 @@ pub use figures::{Figure, Series, figures};
 pub use folder::{Folder, Sink};
 pub use format::{FORMATS, Format, Open, Writer};
 pub use manifest::FileEntry;
+pub use reference::{Errors, Quality};
 pub use table::{Column, Table};
 
 use crate::geometry::Attitude;
@@ -80,6 +83,16 @@ pub fn may_write(dir: &Path, force: bool) -> Result<(), DatasetError> {
     folder::may_write(dir, force).map(|_| ())
 }
 
+/// Writes files that belong together, such as a study's, into `dir`: all of them or none.
+///
+/// # Errors
+/// As of [`write()`].
+pub fn put_all(dir: &Path, force: bool, files: &[(&str, Vec<u8>)]) -> Result<(), DatasetError> {
+    let folder = Folder::open(dir, force)?;
+    files.iter().try_for_each(|(name, contents)| folder.put(name, contents))?;
+    folder.commit()
+}
+
 /// Plays `plan` from 0 up to, not including, `end` and writes the folder `dir`.
 ///
 /// # Errors
@@ -104,19 +117,24 @@ fn write_in_blocks(
     let tables = table::of(plan, !options.estimates.is_empty());
     let mut book = Book::open(&tables, &folder, &options.formats)?;
     let clipped = play(plan, end, block, &mut book, options.progress, options.stop)?;
+    let quality = reference::write(plan, end, |step| {
+        book.row(table::TRUTH + 1 + plan.sensors.len(), step.t, &table::reference(plan.axes, step.attitude))
+    })?;
     for (t, attitude) in options.estimates {
         book.row(tables.len() - 1, *t, &table::quaternion(plan.axes, *attitude))?;
     }
     let files = book.close(&folder)?;
 
-    let (readme, scene) = (readme::text(plan, &files), plan.resolved_until(end));
+    let (readme, scene) = (readme::text(plan, &files, quality.as_ref()), plan.resolved_until(end));
     let mut others = vec![("README.md", readme.as_bytes()), ("scene.toml", scene.as_bytes())];
     others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
     for (name, contents) in &others {
         folder.put(name, contents)?;
     }
     let others: Vec<_> = others.into_iter().map(|(name, _)| name).collect();
-    folder.put("manifest.json", manifest::text(plan, end, &files, &others, &clipped, &folder)?.as_bytes())?;
+    let made =
+        manifest::Made { files: &files, others: &others, clipped: &clipped, quality: quality.as_ref() };
+    folder.put("manifest.json", manifest::text(plan, end, &made, &folder)?.as_bytes())?;
     folder.commit()?;
     let rows = files.iter().map(|file| file.rows).sum();
     Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })

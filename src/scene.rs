@@ -14,6 +14,7 @@ mod fixed_keys;
 mod output;
 pub mod parts;
 mod reader;
+mod reference;
 mod section;
 mod sensors;
 mod suggest;
@@ -23,6 +24,7 @@ pub use document::Place;
 pub use draw::Drawn;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
 pub use output::{Destination, Output};
+pub use reference::Reference;
 pub use suggest::nearest;
 
 use crate::earth::Day;
@@ -56,6 +58,8 @@ pub struct Plan {
     pub trajectory: Trajectory,
     /// What is sensed: gyro, accel, mag, as far as the scene has them.
     pub sensors: Vec<SensorPlan>,
+    /// The attitude to be computed beside the exact truth, if any.
+    pub reference: Option<Reference>,
     /// Where the scene itself sends its packets.
     pub outputs: Vec<Output>,
     /// Values drawn once for this run.
@@ -139,6 +143,8 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     let outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
     let trajectory =
         Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
+    let reference =
+        reference::reference(&top, sensors.complete.then_some(&sensors.plans), &trajectory).unzip();
     let moving = trajectory.moving_until();
     let default = (moving > SimTime::ZERO).then(|| moving.to_string());
     let duration = top.time("duration", default.as_deref(), Sign::Positive);
@@ -167,6 +173,9 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     for (plan, table) in sensors.plans.iter().zip(sensors.resolved) {
         resolved.insert(plan.kind.name().into(), table.into());
     }
+    if let Some(table) = reference.1 {
+        resolved.insert("reference".into(), table.into());
+    }
     if !outputs.resolved.is_empty() {
         resolved.insert("output".into(), outputs.resolved.into());
     }
@@ -179,6 +188,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         limits,
         trajectory,
         sensors: sensors.plans,
+        reference: reference.0,
         outputs: outputs.outputs,
         drawn: Vec::new(),
         resolved: toml::to_string(&resolved).unwrap_or_default(),

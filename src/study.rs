@@ -9,4 +9,4 @@ pub mod motions;
 mod parallel;
 pub mod stability;
 
-pub use parallel::all_cores;
+pub use parallel::{Progress, all_cores};

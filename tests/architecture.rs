@@ -57,7 +57,8 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// What of the outside only some rooms may touch.
 const OUTSIDE: &[(&str, &[&str])] = &[
-    ("std::thread", &["session", "link"]),
+    // The cells of a study are independent: scoped threads share them out and end with it.
+    ("std::thread", &["session", "link", "study"]),
     // `os` reads what the kernel shows as files of its own: who holds a port, what a device is.
     ("std::fs", &["scene", "dataset", "report", "link", "os", "score", "study"]),
     ("std::net", &["link"]),

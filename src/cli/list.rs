@@ -2,6 +2,7 @@
 
 use super::{Refusal, Verdict, say};
 use crate::keys::{Key, Takes};
+use crate::motion::method::{METHODS, MethodKind};
 use crate::report::table;
 use crate::scene::{self, builtin};
 use crate::sensor::{self, SensorKind, parts};
@@ -23,6 +24,8 @@ enum What {
     Parts,
     /// Kinds of motion and their keys
     Motions,
+    /// Ways to step attitude, for `[reference]` and `study`
+    Methods,
     /// Every key of a scene file
     Keys,
     /// What packets look like
@@ -56,6 +59,7 @@ fn body(what: What) -> Result<String, Refusal> {
         ),
         What::Parts => parts()?,
         What::Motions => motions(),
+        What::Methods => methods(),
         What::Keys => keys(),
         What::Protocols => {
             let row = |protocol: Protocol| vec![protocol.name().into(), protocol.about().into()];
@@ -122,6 +126,20 @@ fn motions() -> String {
         kind.keys.iter().for_each(|key| text += &declared(key));
     }
     text
+}
+
+fn methods() -> String {
+    let row = |method: &MethodKind| {
+        let precisions: Vec<_> = method.precisions.iter().map(|precision| precision.name()).collect();
+        vec![
+            method.name.into(),
+            method.order.to_string(),
+            method.input.to_string(),
+            precisions.join(", "),
+            method.about.into(),
+        ]
+    };
+    table(&["name", "order", "input a step", "studied in", "about"], &METHODS.map(row))
 }
 
 fn ports() -> String {

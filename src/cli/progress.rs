@@ -23,6 +23,19 @@ impl Bar {
         Bar(ProgressBar::with_draw_target(length, target).with_style(style))
     }
 
+    /// Of a count of jobs, whose number is told with the first that is done.
+    pub fn of_jobs(name: &'static str) -> Bar {
+        let bar = Bar::new(SimTime(MILLIS));
+        bar.0.set_message(name);
+        bar
+    }
+
+    /// Of jobs.
+    pub fn jobs(&self, done: usize, all: usize) {
+        self.0.set_length(all as u64);
+        self.0.set_position(done as u64);
+    }
+
     /// Of a live run.
     pub fn live(&self, progress: &Progress) {
         let Progress { t, packets, dropped, error_deg } = progress;

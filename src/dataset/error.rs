@@ -1,5 +1,6 @@
 //! Why a dataset could not be written or read.
 
+use crate::motion::method::ReferenceError;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -11,13 +12,13 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum DatasetError {
     /// The output folder holds something.
-    #[error("{} already holds files; name another folder, or replace the dataset in it with --force", path.display())]
+    #[error("{} already holds files; name another folder, or replace what is in it with --force", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
     },
     /// The output path is something else.
-    #[error("{} is not a folder; a dataset is a folder, so name a new one", path.display())]
+    #[error("{} is not a folder; the output is a folder, so name a new one", path.display())]
     NotAFolder {
         /// The path.
         path: PathBuf,
@@ -25,6 +26,9 @@ pub enum DatasetError {
     /// A scene played for ever has no last row.
     #[error("a dataset needs an end: give a time, such as 60s, not `forever`")]
     Endless,
+    /// The method of `[reference]` could not go on.
+    #[error("reference.csv cannot be computed: {0}; choose another `method` in [reference]")]
+    Reference(#[source] ReferenceError),
     /// Asked to stop.
     #[error("stopped before the dataset was complete; nothing was kept")]
     Stopped,

@@ -3,6 +3,7 @@
 use super::error::DatasetError;
 use super::folder::Folder;
 use super::readme;
+use super::reference::Quality;
 use super::table::Column;
 use crate::scene::{Drawn, Plan};
 use crate::sensor::{Sampling, SensorPlan};
@@ -56,6 +57,8 @@ struct Manifest<'a> {
     parts: BTreeMap<&'static str, &'static str>,
     drawn: &'a [Drawn],
     faults: [String; 0],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference: Option<&'a Quality>,
     files: &'a [FileEntry],
     other_files: Vec<OtherEntry<'a>>,
 }
@@ -80,15 +83,24 @@ struct OtherEntry<'a> {
     sha256: String,
 }
 
+/// What was made of a scene.
+pub(super) struct Made<'a> {
+    pub files: &'a [FileEntry],
+    /// The names of the files without numbers.
+    pub others: &'a [&'a str],
+    /// Clipped samples of each sensor.
+    pub clipped: &'a [u64],
+    pub quality: Option<&'a Quality>,
+}
+
 /// The manifest of a dataset whose other files are written.
 pub(super) fn text(
     plan: &Plan,
     end: SimTime,
-    files: &[FileEntry],
-    others: &[&str],
-    clipped: &[u64],
+    made: &Made<'_>,
     folder: &Folder,
 ) -> Result<String, DatasetError> {
+    let &Made { files, others, clipped, quality } = made;
     let other = |&name| Ok(OtherEntry { name, sha256: checksum(&folder.path(name))? });
     let part = |sensor: &SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
     let manifest = Manifest {
@@ -104,6 +116,7 @@ pub(super) fn text(
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
         faults: [],
+        reference: quality,
         files,
         other_files: others.iter().map(other).collect::<Result<_, DatasetError>>()?,
     };

@@ -1,6 +1,7 @@
 //! `README.md`: everything a reader of the numbers would otherwise have to ask.
 
 use super::manifest::{self, FileEntry};
+use super::reference::Quality;
 use crate::geometry::{Attitude, Axes};
 use crate::scene::Plan;
 use crate::sensor::{SensorKind, SensorPlan};
@@ -54,17 +55,18 @@ fn triple(v: glam::DVec3) -> String {
 }
 
 /// The whole text.
-pub(super) fn text(plan: &Plan, files: &[FileEntry]) -> String {
+pub(super) fn text(plan: &Plan, files: &[FileEntry], quality: Option<&Quality>) -> String {
     let sections = [
         heading(plan),
         conventions_section(plan),
         field_section(plan),
         files_section(files),
+        quality.map_or(String::new(), reference_section),
         readings_section(plan),
         loading_section(plan),
         matlab_section(plan.axes),
     ];
-    sections.join("\n")
+    sections.into_iter().filter(|section| !section.is_empty()).collect::<Vec<_>>().join("\n")
 }
 
 fn heading(plan: &Plan) -> String {
@@ -129,6 +131,31 @@ fn files_section(files: &[FileEntry]) -> String {
 ",
     );
     text
+}
+
+fn reference_section(quality: &Quality) -> String {
+    let Quality { from, method, error_deg, norm_error } = quality;
+    let how = match *from {
+        "gyro" => format!(
+            "integrated by the method `{method}` from an error-free gyroscope, at the gyroscope's rate from t = 0 (a \
+             method of several increments a step has a row a step)"
+        ),
+        _ => format!(
+            "computed (`{method}`) from an error-free accelerometer and magnetometer, external forces and the \
+             motion's own acceleration excluded, at the accelerometer's rate from t = 0"
+        ),
+    };
+    format!(
+        "## Reference
+
+`reference.csv` is attitude as a program without the truth would compute it: {how}. It is normalised, in the same
+axes and conventions as `truth.csv`. **`truth.csv` is exact** and what estimates are to be judged by.
+
+Against the truth the reference is off by {:e}° RMS, {:e}° at most, {:e}° at the end; before normalising its norm
+ends at 1 {norm_error:+e}.
+",
+        error_deg.rms, error_deg.max, error_deg.last
+    )
 }
 
 fn readings_section(plan: &Plan) -> String {

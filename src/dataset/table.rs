@@ -29,10 +29,13 @@ pub(super) const TRUTH: usize = 0;
 const QUATERNION: [(&str, &str); 4] = [("qw", "1"), ("qx", "1"), ("qy", "1"), ("qz", "1")];
 const EULER: [(&str, &str); 3] = [("roll_rad", "rad"), ("pitch_rad", "rad"), ("yaw_rad", "rad")];
 
-/// The tables of a plan, the estimate's last where there is one.
+/// The tables of a plan, the reference behind the sensors where there is one, the estimate's last where there is one.
 pub(super) fn of(plan: &Plan, estimate: bool) -> Vec<Table> {
     let mut tables = vec![truth_table()];
     tables.extend(plan.sensors.iter().map(|sensor| sensor_table(sensor.kind)));
+    if plan.reference.is_some() {
+        tables.push(table("reference", QUATERNION.map(column).into_iter().chain(EULER.map(column))));
+    }
     if estimate {
         tables.push(table("estimate", QUATERNION.map(column)));
     }
@@ -70,6 +73,13 @@ pub(super) fn truth(axes: Axes, truth: &Truth) -> [f64; 16] {
     let ([wx, wy, wz], [fx, fy, fz], [mx, my, mz]) =
         (vector(truth.rate), vector(truth.force), vector(truth.field));
     [q.w, q.x, q.y, q.z, roll, pitch, yaw, wx, wy, wz, fx, fy, fz, mx, my, mz]
+}
+
+/// A row of the reference after `t_ns`.
+pub(super) fn reference(axes: Axes, attitude: Attitude) -> [f64; 7] {
+    let q = axes.attitude_out(attitude);
+    let Euler { roll, pitch, yaw } = Euler::from_quat(q);
+    [q.w, q.x, q.y, q.z, roll, pitch, yaw]
 }
 
 /// A row of a sensor after `t_ns`.

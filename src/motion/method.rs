@@ -43,9 +43,11 @@ pub use paper::Paper;
 pub use paper_normalised::PaperNormalised;
 pub use polynomial_fit::PolynomialFit;
 pub use real::Real;
-pub use reference::{ReferenceError, from_accel_mag, reference};
+pub use reference::{ReferenceError, Step, from_accel_mag, integrated, reference};
 pub use rk4::Rk4;
 pub use rkmk_4::Rkmk4;
+
+use std::fmt;
 
 /// Every method: first from samples of rate, then from exact increments, each group by order.
 pub static METHODS: [&MethodKind; 14] = [
@@ -103,6 +105,21 @@ impl Input {
     }
 }
 
+impl fmt::Display for Input {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Input::Rate([at]) => write!(f, "rate at {at} of it"),
+            Input::Rate(fractions) => {
+                let fractions: Vec<_> =
+                    fractions.iter().map(|at| format!("{}", (at * 1e3).round() / 1e3)).collect();
+                write!(f, "rates at {} of it", fractions.join(", "))
+            }
+            Input::Increments(1) => f.write_str("1 increment"),
+            Input::Increments(count) => write!(f, "{count} increments"),
+        }
+    }
+}
+
 /// The numbers a method is computed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
@@ -110,6 +127,16 @@ pub enum Precision {
     Double,
     /// Single, `f32`: what a small flight controller has.
     Single,
+}
+
+impl Precision {
+    /// As in `accuracy.csv`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Precision::Double => f64::NAME,
+            Precision::Single => f32::NAME,
+        }
+    }
 }
 
 /// Compared in double precision only.

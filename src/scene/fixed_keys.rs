@@ -26,6 +26,12 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("force", "duration", "how long it acts"),
     ("force", "acceleration", "a vector in `frame`"),
     ("force", "frame", "\"body\" (default) or \"nav\""),
+    (
+        "reference",
+        "from",
+        "\"gyro\" (default) or \"accel-mag\": which error-free readings reference.csv is computed from",
+    ),
+    ("reference", "method", "how the gyro is stepped: one of `ratetable list methods` (default \"paper\")"),
     ("output", "to", "PROTOCOL@LINK, such as \"mpu@pty\""),
     (
         "output",

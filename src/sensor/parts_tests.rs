@@ -32,8 +32,13 @@ fn every_value_of_every_part_names_its_source() {
             );
         }
     }
-    let unsourced =
-        parts::Part { names: &["X"], about: "", file: "x.toml", text: "[gyro]\nrange = \"1 rad/s\"\n" };
+    let unsourced = parts::Part {
+        names: &["X"],
+        about: "",
+        file: "x.toml",
+        inside: &[],
+        text: "[gyro]\nrange = \"1 rad/s\"\n",
+    };
     let mistake = scene::parts::sources(&unsourced).unwrap_err().to_string();
     assert_eq!(mistake, "x.toml:2:1: `range` needs a `value` and a `source`");
 }

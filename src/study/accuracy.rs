@@ -7,7 +7,7 @@
 
 use super::inputs::gather;
 use super::motions::{Case, Path};
-use super::parallel;
+use super::parallel::{self, Progress};
 use crate::geometry::angle_between;
 use crate::motion::method::{Input, METHODS, MethodKind, Precision, Quaternion, Real};
 use glam::DQuat;
@@ -37,13 +37,13 @@ pub struct Row {
 }
 
 /// Every method in every precision on every case at every rate, with `threads` threads; `now` is a clock that never
-/// goes back. A method whose step is longer than the case has no line there.
-pub fn run(cases: &[Case], threads: usize, now: &dyn Fn() -> Duration) -> Vec<Row> {
+/// goes back. A method whose step is longer than the case has no line there. `progress` counts the runs for the errors.
+pub fn run(cases: &[Case], threads: usize, now: &dyn Fn() -> Duration, progress: Progress) -> Vec<Row> {
     let jobs = jobs(cases);
     // The longest first, so that no thread is left with one at the end.
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_key(|&index| std::cmp::Reverse(jobs[index].samples()));
-    let ends = parallel::map(threads, order.len(), |turn| (order[turn], jobs[order[turn]].end()));
+    let ends = parallel::map(threads, order.len(), progress, |turn| (order[turn], jobs[order[turn]].end()));
     let mut found = vec![None; jobs.len()];
     for (index, end) in ends {
         found[index] = end;
@@ -107,10 +107,7 @@ impl Job<'_> {
             method: self.method.name,
             motion: self.case.name.clone(),
             rate_hz: self.rate_hz,
-            precision: match self.precision {
-                Precision::Double => f64::NAME,
-                Precision::Single => f32::NAME,
-            },
+            precision: self.precision.name(),
             error_deg: end.map(|end| end.error_deg),
             norm_error: end.map(|end| end.norm_error),
             ns_per_step,

@@ -10,8 +10,16 @@ pub fn all_cores() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get)
 }
 
+/// Told, from any thread, how many of how many jobs are done.
+pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
 /// `work(0), …, work(count − 1)`, each done once by one of `threads` threads, the next job to whoever is free.
-pub(super) fn map<T: Send>(threads: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+pub(super) fn map<T: Send>(
+    threads: usize,
+    count: usize,
+    progress: Progress,
+    work: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let done = Mutex::new(Vec::with_capacity(count));
     thread::scope(|scope| {
@@ -25,6 +33,7 @@ pub(super) fn map<T: Send>(threads: usize, count: usize, work: impl Fn(usize) ->
                     let result = work(index);
                     if let Ok(mut done) = done.lock() {
                         done.push((index, result));
+                        progress(done.len(), count);
                     }
                 }
             });
@@ -42,8 +51,8 @@ mod tests {
     #[test]
     fn results_come_in_the_order_of_the_jobs_whatever_the_number_of_threads() {
         for threads in [0, 1, 2, 7] {
-            assert_eq!(map(threads, 100, |i| i * i), (0..100).map(|i| i * i).collect::<Vec<_>>());
+            assert_eq!(map(threads, 100, &|_, _| (), |i| i * i), (0..100).map(|i| i * i).collect::<Vec<_>>());
         }
-        assert_eq!(map(2, 0, |i| i), Vec::<usize>::new());
+        assert_eq!(map(2, 0, &|_, _| (), |i| i), Vec::<usize>::new());
     }
 }

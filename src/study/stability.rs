@@ -9,7 +9,7 @@ mod trials;
 
 pub use cases::CASES;
 
-use super::parallel;
+use super::parallel::{self, Progress};
 use crate::motion::method::{METHODS, MethodKind};
 use serde::Serialize;
 
@@ -105,9 +105,9 @@ struct Outcome {
 }
 
 /// Every method through every case, with `threads` threads.
-pub fn run(effort: Effort, threads: usize) -> Vec<Row> {
+pub fn run(effort: Effort, threads: usize, progress: Progress) -> Vec<Row> {
     let jobs: Vec<_> = CASES.iter().flat_map(|case| METHODS.map(|method| (method, case))).collect();
-    parallel::map(threads, jobs.len(), |index| {
+    parallel::map(threads, jobs.len(), progress, |index| {
         let (method, case) = jobs[index];
         case.row(method, effort)
     })

@@ -39,13 +39,49 @@ pub enum ReferenceError {
     },
 }
 
-/// The attitude at the ticks of `rate` in `[0, end)`, integrated from the true gyroscope by the method called
-/// `method`, from the true attitude at 0 on.
+/// One attitude of a reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// When.
+    pub t: SimTime,
+    /// Of unit norm, its sign continuous in time.
+    pub attitude: Attitude,
+    /// The norm of the method's own state, which `attitude` is made from.
+    pub norm: f64,
+}
+
+/// The attitude at the ticks of `rate` in `[0, end)`, integrated from the true gyroscope by `method`, from the true
+/// attitude at 0 on; each is computed when it is asked for, and the first that is refused is the last of use.
 ///
 /// A method of rates is given the truth at the times it asks for, to the nanosecond; one of increments the true
 /// means times their intervals, and it has an attitude only at the ends of its steps, every few ticks. At a seam of the
-/// trajectory a sample is that of the segment which begins, as a gyroscope's is. What is given back is of unit
-/// norm; the method's own state is kept as it leaves it. Its sign is continuous in time.
+/// trajectory a sample is that of the segment which begins, as a gyroscope's is. The method's own state is kept as
+/// it leaves it.
+pub fn integrated(
+    trajectory: &Trajectory,
+    rate: Rate,
+    end: SimTime,
+    method: &'static MethodKind,
+) -> impl Iterator<Item = Result<Step, ReferenceError>> {
+    let samples = method.input.samples() as u64;
+    let ticks = rate.ticks_before(SimTime::ZERO, end);
+    let mut q = Quaternion::<f64>::from(trajectory.at(SimTime::ZERO).attitude.q);
+    let mut inputs = Vec::with_capacity(method.input.count());
+    let mut sign = Sign::default();
+    (0..ticks).step_by(samples as usize).map(move |tick| {
+        let t = rate.tick(tick);
+        if let Some(before) = tick.checked_sub(samples) {
+            let from = rate.tick(before);
+            gather(trajectory, rate, before, method, &mut inputs);
+            let refuse = |refused| ReferenceError::Refused { method: method.name, t: from, refused };
+            q = method.run(q, (t - from).seconds(), &inputs).map_err(refuse)?;
+        }
+        let norm = DQuat::from(q).length();
+        Ok(Step { t, attitude: sign.kept(DQuat::from(q.normalised())), norm })
+    })
+}
+
+/// The attitudes of [`integrated`] by the method called `method`, together.
 pub fn reference(
     trajectory: &Trajectory,
     rate: Rate,
@@ -53,25 +89,7 @@ pub fn reference(
     method: &str,
 ) -> Result<Vec<(SimTime, Attitude)>, ReferenceError> {
     let method = find(method).ok_or_else(|| ReferenceError::UnknownMethod { name: method.to_string() })?;
-    let samples = method.input.samples() as u64;
-    let ticks = rate.ticks_before(SimTime::ZERO, end);
-    let start = trajectory.at(SimTime::ZERO).attitude.q;
-    let mut series = Vec::with_capacity((ticks / samples) as usize + 1);
-    let mut q = Quaternion::<f64>::from(start);
-    let mut inputs = Vec::with_capacity(method.input.count());
-    for tick in (0..ticks).step_by(samples as usize) {
-        push(&mut series, rate.tick(tick), DQuat::from(q.normalised()));
-        if tick + samples < ticks {
-            let (from, to) = (rate.tick(tick), rate.tick(tick + samples));
-            gather(trajectory, rate, tick, method, &mut inputs);
-            q = method.run(q, (to - from).seconds(), &inputs).map_err(|refused| ReferenceError::Refused {
-                method: method.name,
-                t: from,
-                refused,
-            })?;
-        }
-    }
-    Ok(series)
+    integrated(trajectory, rate, end, method).map(|step| step.map(|step| (step.t, step.attitude))).collect()
 }
 
 /// The inputs of the step that starts at `tick`.
@@ -93,27 +111,33 @@ fn gather(path: &Trajectory, rate: Rate, tick: u64, method: &MethodKind, inputs:
 /// The attitude at the ticks of `rate` in `[0, end)` from the true accelerometer and magnetometer: [`ecompass`] on
 /// gravity's reaction and the field, without forces and without the acceleration of the motion itself.
 ///
-/// Its sign is continuous in time. Where gravity or field vanish or lie along each other there is none, and the
-/// error says which.
+/// Where gravity or field vanish or lie along each other there is none, and the error says which.
 pub fn from_accel_mag(
     trajectory: &Trajectory,
     rate: Rate,
     end: SimTime,
-) -> Result<Vec<(SimTime, Attitude)>, ReferenceError> {
+) -> impl Iterator<Item = Result<Step, ReferenceError>> {
     let (up, north) = (-trajectory.gravity(), trajectory.field());
-    let ticks = rate.ticks_before(SimTime::ZERO, end);
-    let mut series = Vec::with_capacity(ticks as usize);
-    for t in (0..ticks).map(|tick| rate.tick(tick)) {
+    let mut sign = Sign::default();
+    (0..rate.ticks_before(SimTime::ZERO, end)).map(move |tick| {
+        let t = rate.tick(tick);
         let truth = trajectory.at(t);
         let attitude = ecompass(truth.attitude.inverse().apply(up), truth.field, up, north)
             .map_err(|why| ReferenceError::Degenerate { t, why })?;
-        push(&mut series, t, attitude.q);
-    }
-    Ok(series)
+        Ok(Step { t, attitude: sign.kept(attitude.q), norm: 1.0 })
+    })
 }
 
-/// Adds `q` with the sign nearer to the last.
-fn push(series: &mut Vec<(SimTime, Attitude)>, t: SimTime, q: DQuat) {
-    let turned = series.last().is_some_and(|(_, last)| last.q.dot(q) < 0.0);
-    series.push((t, Attitude::from_quat(if turned { -q } else { q })));
+/// Keeps a quaternion's sign continuous.
+#[derive(Default)]
+struct Sign(Option<DQuat>);
+
+impl Sign {
+    /// `q` with the sign nearer to the last.
+    fn kept(&mut self, q: DQuat) -> Attitude {
+        let turned = self.0.is_some_and(|last| last.dot(q) < 0.0);
+        let q = if turned { -q } else { q };
+        self.0 = Some(q);
+        Attitude::from_quat(q)
+    }
 }

@@ -150,8 +150,9 @@ fn an_unknown_method_is_answered_with_those_there_are() {
 #[test]
 fn the_reference_of_accelerometer_and_magnetometer_is_the_truth() {
     let path = turning();
-    for (t, attitude) in from_accel_mag(&path, Rate::hz(100), SimTime(3 * NANOS)).unwrap() {
-        assert!(attitude.angle_to(path.at(t).attitude) < 1e-14, "{t}");
+    for step in from_accel_mag(&path, Rate::hz(100), SimTime(3 * NANOS)) {
+        let Step { t, attitude, norm } = step.unwrap();
+        assert!(attitude.angle_to(path.at(t).attitude) < 1e-14 && norm == 1.0, "{t}");
     }
 }
 
@@ -163,7 +164,7 @@ fn without_gravity_or_a_level_part_of_the_field_there_is_no_reference() {
         (GRAVITY, Vector::new(0.0, 0.0, 55.0), Degenerate::Parallel),
     ] {
         let path = Trajectory::new(Attitude::IDENTITY, vec![], vec![], gravity, field);
-        let refused = from_accel_mag(&path, Rate::hz(100), SimTime(NANOS)).unwrap_err();
+        let refused = from_accel_mag(&path, Rate::hz(100), SimTime(NANOS)).next().unwrap().unwrap_err();
         assert_eq!(refused, ReferenceError::Degenerate { t: SimTime::ZERO, why: expected });
     }
 }

@@ -144,7 +144,7 @@ fn every_method_has_a_row_in_every_precision_with_its_cost() {
         case.duration = 0.5;
     }
     let start = std::time::Instant::now();
-    let rows = run(&cases, 2, &|| start.elapsed());
+    let rows = run(&cases, 2, &|| start.elapsed(), &|_, _| ());
     let per_case: usize = METHODS.iter().map(|method| method.precisions.len()).sum();
     assert_eq!(rows.len(), 2 * per_case);
     for row in &rows {
@@ -158,7 +158,7 @@ fn every_method_has_a_row_in_every_precision_with_its_cost() {
     }
     // A motion too short for a step of eight increments has no such row.
     cases[0].duration = 0.05;
-    let rows = run(&cases[..1], 1, &|| start.elapsed());
+    let rows = run(&cases[..1], 1, &|| start.elapsed(), &|_, _| ());
     assert!(rows.iter().all(|row| row.method != "polynomial-fit") && !rows.is_empty());
 }
 

@@ -11,7 +11,7 @@ fn row(method: &str, case: &str) -> Row {
 
 #[test]
 fn every_method_has_a_verdict_in_every_case() {
-    let rows = run(BRIEF, 2);
+    let rows = run(BRIEF, 2, &|_, _| ());
     assert_eq!(rows.len(), METHODS.len() * CASES.len());
     for row in &rows {
         assert!(!row.figure.is_nan() && row.figure >= 0.0, "{row:?}");

@@ -1,0 +1,79 @@
+//! What the studies hand to the charts.
+
+use super::tables::{label, series};
+use crate::motion::method::METHODS;
+use crate::report::chart::{self, Cell, Grid, LogLog};
+use crate::report::number;
+use crate::study::accuracy;
+use crate::study::motions::Case;
+use crate::study::stability::{self, CASES, Verdict};
+
+/// Below this the truth itself is not known better, degrees.
+const FLOOR: f64 = 1e-12;
+
+/// Cost against error, a plot a motion, a point a rate.
+pub fn accuracy(rows: &[accuracy::Row], cases: &[Case]) -> String {
+    let motion = |case: &Case| {
+        let of: Vec<_> = rows.iter().filter(|row| row.motion == case.name).collect();
+        let method = |name: String| {
+            let points = of.iter().filter(|row| label(row) == name);
+            let points = points.filter_map(|row| Some((row.ns_per_simulated_s, row.error_deg?))).collect();
+            chart::Method { name, points }
+        };
+        chart::Motion {
+            title: format!("{}: {}, {} s", case.name, case.about, number(case.duration)),
+            methods: series(of.iter().copied()).into_iter().map(method).collect(),
+        }
+    };
+    chart::loglog(&LogLog {
+        title: "What each attitude method costs and how far it ends from the truth".into(),
+        subtitle: format!("a point a sample rate, {}; one thread", rates(cases)),
+        x_label: "cost (ns per simulated second)".into(),
+        y_label: "error at the end (deg)".into(),
+        y_floor: Some(FLOOR),
+        motions: cases.iter().map(motion).collect(),
+    })
+}
+
+fn rates(cases: &[Case]) -> String {
+    let all = || cases.iter().flat_map(|case| &case.rates);
+    match (all().min(), all().max()) {
+        (Some(least), Some(most)) => format!("from {least} to {most} Hz, the lowest leftmost"),
+        _ => String::new(),
+    }
+}
+
+/// Verdicts, a row a case, a column a method.
+pub fn stability(rows: &[stability::Row]) -> String {
+    let cell = |case: &str, method: &str| {
+        let found = rows.iter().find(|row| row.case == case && row.method == method);
+        found.map_or_else(Cell::default, |row| Cell { verdict: verdict(row.verdict), figure: figure(row) })
+    };
+    let row = |case: &stability::Case| chart::Row {
+        name: case.about.to_string(),
+        cells: METHODS.iter().map(|method| cell(case.name, method.name)).collect(),
+    };
+    chart::grid(&Grid {
+        title: "Where attitude methods fail".into(),
+        subtitle: "a figure is what the row names last; # is the first step at which the method fails".into(),
+        columns: METHODS.iter().map(|method| method.name.to_string()).collect(),
+        rows: CASES.iter().map(row).collect(),
+    })
+}
+
+/// How much where it is worse, when where it fails.
+fn figure(row: &stability::Row) -> String {
+    match (row.verdict, row.first_failing_step) {
+        (Verdict::Stable, _) => String::new(),
+        (Verdict::Fails, Some(step)) => format!("#{}", number(step as f64)),
+        _ => format!("{:.0e}", row.figure),
+    }
+}
+
+fn verdict(verdict: Verdict) -> chart::Verdict {
+    match verdict {
+        Verdict::Stable => chart::Verdict::Stable,
+        Verdict::Degraded => chart::Verdict::Degraded,
+        Verdict::Fails => chart::Verdict::Fails,
+    }
+}

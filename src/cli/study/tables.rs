@@ -1,0 +1,113 @@
+//! The studies as a person reads them.
+
+use crate::motion::method::METHODS;
+use crate::report::{number, table};
+use crate::study::accuracy;
+use crate::study::motions::Case;
+use crate::study::stability::{self, CASES, Verdict};
+
+/// Final errors at these rates are shown.
+const SHOWN_RATES: [u32; 2] = [100, 1000];
+/// Tolerances (degrees) for which the cheapest is named.
+const TOLERANCES: [f64; 4] = [1.0, 1e-2, 1e-4, 1e-6];
+
+/// Errors at [`SHOWN_RATES`], then the cheapest within each tolerance.
+pub fn accuracy(rows: &[accuracy::Row], cases: &[Case]) -> String {
+    let mut text = String::new();
+    for case in cases {
+        text += &format!("{}: {}, {} s\n", case.name, case.about, number(case.duration));
+    }
+    for rate in SHOWN_RATES {
+        let kept: Vec<_> = rows.iter().filter(|row| row.rate_hz == rate).collect();
+        if !kept.is_empty() {
+            text += &format!("\nfinal attitude error at {rate} Hz, degrees; nanoseconds a step\n");
+            text += &errors(&kept, cases);
+        }
+    }
+    text +=
+        "\ncheapest method and rate that end within a tolerance, with its nanoseconds per simulated second\n";
+    text + &cheapest(rows, cases)
+}
+
+/// A line a method: its error on each motion.
+fn errors(rows: &[&accuracy::Row], cases: &[Case]) -> String {
+    let names: Vec<_> = cases.iter().map(|case| case.name.as_str()).collect();
+    let heading = [&["method"], names.as_slice(), &["ns/step"]].concat();
+    let mut lines: Vec<Vec<String>> = Vec::new();
+    for method in series(rows.iter().copied()) {
+        let of: Vec<_> = rows.iter().filter(|row| label(row) == method).collect();
+        let cell = |name: &&str| {
+            let row = of.iter().find(|row| row.motion == *name);
+            row.map_or("-".into(), |row| row.error_deg.map_or("lost".into(), |error| format!("{error:.1e}")))
+        };
+        let cost = of.iter().map(|row| row.ns_per_step).fold(f64::INFINITY, f64::min);
+        let cells = names.iter().map(cell);
+        lines.push([method].into_iter().chain(cells).chain([format!("{cost:.0}")]).collect());
+    }
+    table(&heading, &lines)
+}
+
+fn cheapest(rows: &[accuracy::Row], cases: &[Case]) -> String {
+    let titles: Vec<_> = TOLERANCES.iter().map(|tolerance| format!("{} deg", number(*tolerance))).collect();
+    let heading: Vec<_> = ["motion"].into_iter().chain(titles.iter().map(String::as_str)).collect();
+    let line = |case: &Case| {
+        let cell = |tolerance: &f64| {
+            let within = rows.iter().filter(|row| {
+                row.motion == case.name && row.error_deg.is_some_and(|error| error <= *tolerance)
+            });
+            let best = within.min_by(|a, b| a.ns_per_simulated_s.total_cmp(&b.ns_per_simulated_s));
+            best.map_or("none".into(), |row| {
+                format!("{} at {} Hz ({:.1e})", label(row), row.rate_hz, row.ns_per_simulated_s)
+            })
+        };
+        [case.name.clone()].into_iter().chain(TOLERANCES.iter().map(cell)).collect()
+    };
+    table(&heading, &cases.iter().map(line).collect::<Vec<_>>())
+}
+
+/// What a method is called in a table or chart: the precision is named where it is not the usual.
+pub fn label(row: &accuracy::Row) -> String {
+    match row.precision {
+        "f64" => row.method.to_string(),
+        other => format!("{} {other}", row.method),
+    }
+}
+
+/// The labels that occur, in order of appearance.
+pub fn series<'a>(rows: impl IntoIterator<Item = &'a accuracy::Row>) -> Vec<String> {
+    let mut labels = Vec::new();
+    for label in rows.into_iter().map(label) {
+        if !labels.contains(&label) {
+            labels.push(label);
+        }
+    }
+    labels
+}
+
+/// A line a method, a sign a case, and what the cases are.
+pub fn stability(rows: &[stability::Row]) -> String {
+    let numbers: Vec<_> = (1..=CASES.len()).map(|n| n.to_string()).collect();
+    let heading: Vec<_> = ["method"].into_iter().chain(numbers.iter().map(String::as_str)).collect();
+    let line = |name: &'static str| {
+        let sign = |case: &stability::Case| {
+            let row = rows.iter().find(|row| row.method == name && row.case == case.name);
+            row.map_or("-", |row| sign(row.verdict)).to_string()
+        };
+        [name.to_string()].into_iter().chain(CASES.iter().map(sign)).collect()
+    };
+    let lines: Vec<_> = METHODS.iter().map(|method| line(method.name)).collect();
+    let about: String = CASES
+        .iter()
+        .zip(&numbers)
+        .map(|(case, n)| format!("{n:>2} {}: {}\n", case.name, case.about))
+        .collect();
+    format!("where methods fail: . stable, ~ degraded, X fails\n{}\n{about}", table(&heading, &lines))
+}
+
+fn sign(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Stable => ".",
+        Verdict::Degraded => "~",
+        Verdict::Fails => "X",
+    }
+}
