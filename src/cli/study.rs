@@ -151,3 +151,78 @@ fn text(results: &Results, cases: &[Case]) -> String {
     let stability = results.stability.as_ref().map(|rows| tables::stability(rows));
     accuracy.into_iter().chain(stability).collect::<Vec<_>>().join("\n")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::stability::Verdict;
+
+    fn results() -> Results {
+        let row = |method, rate_hz, error_deg| accuracy::Row {
+            method,
+            motion: "A".into(),
+            rate_hz,
+            precision: "f64",
+            error_deg,
+            norm_error: error_deg,
+            ns_per_step: 2.5,
+            ns_per_simulated_s: 250.0,
+        };
+        let failed = stability::Row {
+            method: "paper",
+            case: "rate-1e6",
+            verdict: Verdict::Fails,
+            figure: f64::INFINITY,
+            first_failing_step: Some(1),
+        };
+        Results {
+            version: "0",
+            quick: true,
+            accuracy: Some(vec![row("paper", 100, Some(1e-3)), row("coning-2", 100, None)]),
+            stability: Some(vec![failed]),
+        }
+    }
+
+    #[test]
+    fn the_tables_for_machines_have_the_columns_they_are_known_by() {
+        let files = files(&results(), &cases(None, true).unwrap()).unwrap();
+        let text = |name| {
+            let (_, bytes) = files.iter().find(|(found, _)| *found == name).unwrap();
+            String::from_utf8(bytes.clone()).unwrap()
+        };
+        assert_eq!(
+            text("accuracy.csv"),
+            "method,motion,rate_hz,precision,error_deg,norm_error,ns_per_step,ns_per_simulated_s\n\
+             paper,A,100,f64,0.001,0.001,2.5,250.0\n\
+             coning-2,A,100,f64,,,2.5,250.0\n"
+        );
+        assert_eq!(
+            text("stability.csv"),
+            "method,case,verdict,figure,first_failing_step\npaper,rate-1e6,fails,inf,1\n"
+        );
+        assert!(text("accuracy.svg").starts_with("<svg") && text("stability.svg").contains("rate-1e6"));
+    }
+
+    #[test]
+    fn a_person_reads_the_errors_what_is_cheapest_and_the_verdicts() {
+        let text = text(&results(), &cases(None, true).unwrap());
+        for line in [
+            "paper     1.0e-3  -",
+            "coning-2  lost    -",
+            "A       rates       paper 100 Hz (2e2)",
+            "~ degraded",
+        ] {
+            assert!(text.contains(line), "{line} in\n{text}");
+        }
+    }
+
+    #[test]
+    fn a_scene_joins_unless_it_has_the_name_of_a_motion() {
+        let mut plan = Plan::load("coning", &[]).unwrap();
+        let joined = cases(Some(&plan), true).unwrap();
+        assert_eq!(joined.last().map(|case| (case.name.as_str(), joined.len())), Some(("coning", 5)));
+        drop(joined);
+        plan.name = "B".into();
+        assert!(cases(Some(&plan), true).unwrap_err().0.contains("give it another `name`"));
+    }
+}

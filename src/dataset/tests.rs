@@ -516,3 +516,82 @@ fn the_readme_tells_what_a_reader_would_ask() {
         assert!(readme.contains(said), "{said} is missing from\n{readme}");
     }
 }
+
+/// About a fixed axis at 2000 deg/s, 1000 steps of 10 ms and the last row after them.
+const FAST: &str = r#"
+duration = "10.01 s"
+[[motion]]
+kind = "rotate"
+angular_rate = "[2000, 0, 0] deg/s"
+duration = "11 s"
+[gyro]
+rate = "100 Hz"
+noise_std = "0.1 rad/s"
+[accel]
+rate = "200 Hz"
+[mag]
+rate = "50 Hz"
+[[force]]
+duration = "5 s"
+acceleration = "[0, 1.5, 0.3] m/s^2"
+[reference]
+"#;
+
+/// The manifest's entry and the rows of `reference.csv`.
+fn reference_of(keys: &str) -> (serde_json::Value, usize, String) {
+    let plan = parsed(&format!("{FAST}{keys}"));
+    let files = written(&plan, plan.duration, player::BLOCK);
+    let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
+    let listed = manifest["files"].as_array().unwrap().iter().any(|file| file["name"] == "reference.csv");
+    assert!(listed);
+    let header = "t_ns,qw,qx,qy,qz,roll_rad,pitch_rad,yaw_rad\n0,1,0,0,0,0,0,0\n";
+    assert!(files["reference.csv"].starts_with(header.as_bytes()));
+    let readme = String::from_utf8(files["README.md"].clone()).unwrap();
+    (manifest["reference"].clone(), rows(&files, "reference.csv").len(), readme)
+}
+
+#[test]
+fn the_papers_reference_fails_at_high_rates_as_it_is_known_to() {
+    let (entry, rows, readme) = reference_of("");
+    assert_eq!((entry["from"].as_str(), entry["method"].as_str(), rows), (Some("gyro"), Some("paper"), 1001));
+    let [norm, last] = [&entry["norm_error"], &entry["error_deg"]["final"]].map(|x| x.as_f64().unwrap());
+    assert!((norm - 0.166).abs() < 5e-4, "{norm}");
+    assert!((last - 99.8).abs() < 0.1, "{last}");
+    assert!(
+        readme.contains("integrated by the method `paper`") && readme.contains("**`truth.csv` is exact**")
+    );
+}
+
+#[test]
+fn a_good_reference_is_the_truth() {
+    for (keys, rows) in [
+        ("method = \"magnus-4\"", 1001),
+        ("method = \"coning-4\"", 251),
+        ("from = \"accel-mag\"", 2002),
+        ("from = \"accel-mag\"\nmethod = \"paper\"", 2002),
+    ] {
+        let (entry, found, readme) = reference_of(keys);
+        assert_eq!(found, rows, "{keys}");
+        for field in ["rms", "max", "final"] {
+            let error = entry["error_deg"][field].as_f64().unwrap();
+            assert!(error < 1e-9, "{keys}: {field} {error} deg");
+        }
+        assert!(entry["norm_error"].as_f64().unwrap().abs() < 1e-12);
+        assert!(readme.contains("## Reference"));
+    }
+}
+
+#[test]
+fn a_scene_without_a_reference_has_none_and_one_beyond_numbers_says_why() {
+    let (_home, out) = place();
+    let plain = plan("still", &["duration=1 s"]);
+    write_to(&plain, plain.duration, &out, false).unwrap();
+    let files = contents(&out);
+    assert!(!files.contains_key("reference.csv"));
+    assert!(!String::from_utf8_lossy(&files["manifest.json"]).contains("\"reference\""));
+    let text = FAST.replace("2000, 0, 0] deg", "1e9, 0, 0] rad");
+    let (wild, (_home, out)) = (parsed(&text), place());
+    let refused = write_to(&wild, wild.duration, &out, false).unwrap_err().to_string();
+    assert!(refused.contains("reference.csv cannot be computed: `paper` at"), "{refused}");
+    assert!(!out.exists());
+}

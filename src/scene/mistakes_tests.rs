@@ -344,6 +344,31 @@ const REST: &[Case] = &[
         gyro!("[[output]]\nto = \"mpuu@pty\"\n"),
         &[("5:6", "`mpuu` is no protocol of this version (mpu, mavlink, csv, jsonl); did you mean `mpu`?")],
     ),
+    (
+        gyro!("[reference]\nmethod = \"magnus\"\n"),
+        &[("5:10", "`magnus` is no method (euler, paper, |did you mean `magnus-4`?")],
+    ),
+    (
+        gyro!("[reference]\nmethod = \"auto\"\ntolerance = \"0.001 deg\"\n"),
+        &[
+            ("5:10", "`auto` is not a method of this version: choose one of euler, paper, "),
+            ("6:13", "`tolerance` goes with method = \"auto\", which this version does not have"),
+        ],
+    ),
+    (gyro!("[reference]\nfrom = \"gyros\"\n"), &[("5:8", "`from` takes gyro or accel-mag, not `gyros`")]),
+    (gyro!("[reference]\nfrom = \"accel-mag\"\n"), &[("5:8", "needs both an [accel] and a [mag]")]),
+    (
+        "duration = \"1 s\"\n[mag]\nrate = \"1 Hz\"\n[reference]\n",
+        &[("4:1", "a reference from the gyro needs a [gyro] with its rate")],
+    ),
+    (
+        "duration = \"1 s\"\naccel = { rate = \"1 Hz\" }\nmag = { rate = \"1 Hz\" }\nreference = { from = \"accel-mag\" }\n[earth]\nfield = \"[0, 0, 50] uT\"\n",
+        &[("4:22", "accel-mag gives no attitude here: the magnetic field is along the specific force")],
+    ),
+    (
+        gyro!("[reference]\nmetod = \"paper\"\n"),
+        &[("5:1", "not a key of [reference]: did you mean `method`?")],
+    ),
     (gyro!("[[output]]\n"), &[("4:1", "an output needs a destination, such as to = \"mpu@pty\"")]),
     (
         gyro!("[[output]]\nto = \"mpu@pty\"\nlayout = \"burst\"\n"),

@@ -65,6 +65,10 @@ bias = "[0.0007, 0.00033, -0.00404] m/s^2"
 rate = "100 Hz"
 noise_variance = "0.04 uT^2"
 
+[reference]                    # optional: reference.csv computed the paper's way, beside the exact truth
+from = "gyro"                  # or "accel-mag" (external forces excluded)
+method = "paper"               # any of `list methods`
+
 [[output]]
 to = "mpu@pty"
 "#;
@@ -499,4 +503,21 @@ fn every_key_that_is_listed_is_known() {
             "{table} {key}: {error}"
         );
     }
+}
+
+#[test]
+fn a_reference_is_what_the_scene_asks_for_and_is_written_down() {
+    let named = |plan: &Plan| plan.reference.map(|reference| (reference.from(), reference.method()));
+    assert_eq!(named(&plan(EXAMPLE)), Some(("gyro", "paper")));
+    assert_eq!(named(&plan(SHORT)), None);
+    let short = format!("{SHORT}[reference]\n");
+    assert_eq!(named(&plan(&short)), Some(("gyro", "paper")));
+    assert!(plan(&short).resolved.contains("[reference]\nfrom = \"gyro\"\nmethod = \"paper\""));
+    let method = set(&short, &["reference.method=magnus-4"]).unwrap();
+    assert_eq!(named(&method), Some(("gyro", "magnus-4")));
+    assert_eq!(named(&plan(&method.resolved)), Some(("gyro", "magnus-4")));
+    let sets = ["reference.from=accel-mag", "accel.rate=200 Hz", "mag.rate=100 Hz"];
+    let fixed = set(&short, &sets).unwrap();
+    assert!(matches!(fixed.reference, Some(Reference::AccelMag { rate }) if rate == Rate::hz(200)));
+    assert_eq!(named(&plan(&fixed.resolved)), Some(("accel-mag", "triad")));
 }

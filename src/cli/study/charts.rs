@@ -50,7 +50,7 @@ pub fn stability(rows: &[stability::Row]) -> String {
         found.map_or_else(Cell::default, |row| Cell { verdict: verdict(row.verdict), figure: figure(row) })
     };
     let row = |case: &stability::Case| chart::Row {
-        name: case.about.to_string(),
+        name: format!("{}: {}", case.name, case.about),
         cells: METHODS.iter().map(|method| cell(case.name, method.name)).collect(),
     };
     chart::grid(&Grid {

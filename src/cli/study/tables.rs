@@ -1,6 +1,6 @@
 //! The studies as a person reads them.
 
-use crate::motion::method::METHODS;
+use crate::motion::method::{Input, METHODS, find};
 use crate::report::{number, table};
 use crate::study::accuracy;
 use crate::study::motions::Case;
@@ -47,22 +47,35 @@ fn errors(rows: &[&accuracy::Row], cases: &[Case]) -> String {
     table(&heading, &lines)
 }
 
+/// Two lines a motion: from samples of rate, and from increments, which not every part gives.
 fn cheapest(rows: &[accuracy::Row], cases: &[Case]) -> String {
-    let titles: Vec<_> = TOLERANCES.iter().map(|tolerance| format!("{} deg", number(*tolerance))).collect();
-    let heading: Vec<_> = ["motion"].into_iter().chain(titles.iter().map(String::as_str)).collect();
-    let line = |case: &Case| {
-        let cell = |tolerance: &f64| {
-            let within = rows.iter().filter(|row| {
-                row.motion == case.name && row.error_deg.is_some_and(|error| error <= *tolerance)
-            });
-            let best = within.min_by(|a, b| a.ns_per_simulated_s.total_cmp(&b.ns_per_simulated_s));
-            best.map_or("none".into(), |row| {
-                format!("{} at {} Hz ({:.1e})", label(row), row.rate_hz, row.ns_per_simulated_s)
-            })
-        };
-        [case.name.clone()].into_iter().chain(TOLERANCES.iter().map(cell)).collect()
-    };
-    table(&heading, &cases.iter().map(line).collect::<Vec<_>>())
+    let titles: Vec<_> = TOLERANCES.iter().map(|tolerance| format!("{tolerance} deg")).collect();
+    let heading: Vec<_> = ["motion", "from"].into_iter().chain(titles.iter().map(String::as_str)).collect();
+    let mut lines = Vec::new();
+    for case in cases {
+        for from in ["rates", "increments"] {
+            let tried: Vec<_> =
+                rows.iter().filter(|row| row.motion == case.name && input(row) == Some(from)).collect();
+            let cells = TOLERANCES.iter().map(|&tolerance| best(&tried, tolerance));
+            lines.push([case.name.clone(), from.to_string()].into_iter().chain(cells).collect());
+        }
+    }
+    table(&heading, &lines)
+}
+
+fn best(tried: &[&accuracy::Row], tolerance: f64) -> String {
+    let within = tried.iter().filter(|row| row.error_deg.is_some_and(|error| error <= tolerance));
+    let best = within.min_by(|a, b| a.ns_per_simulated_s.total_cmp(&b.ns_per_simulated_s));
+    best.map_or("none".into(), |row| {
+        format!("{} {} Hz ({:.0e})", label(row), row.rate_hz, row.ns_per_simulated_s)
+    })
+}
+
+fn input(row: &accuracy::Row) -> Option<&'static str> {
+    Some(match find(row.method)?.input {
+        Input::Rate(_) => "rates",
+        Input::Increments(_) => "increments",
+    })
 }
 
 /// What a method is called in a table or chart: the precision is named where it is not the usual.
