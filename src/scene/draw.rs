@@ -60,7 +60,8 @@ impl Section<'_> {
     pub(super) fn settle_bias(&self, plan: &mut SensorPlan) {
         let context = plan.context(self.seed());
         let Some(bias) = sensor::settle_bias(&mut plan.values, &context) else { return };
-        let text = quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), plan.kind.unit());
+        let text =
+            quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), plan.kind.unit());
         self.reader
             .draws
             .borrow_mut()
