@@ -344,6 +344,11 @@ const REST: &[Case] = &[
         gyro!("[[output]]\nto = \"mpuu@pty\"\n"),
         &[("5:6", "`mpuu` is no protocol of this version (mpu, mavlink, csv, jsonl); did you mean `mpu`?")],
     ),
+    (gyro!("[[output]]\nlayout = \"burst\"\n"), &[("4:1", "an output needs a destination")]),
+    (
+        gyro!("[[output]]\nto = \"mpu\"\nlayout = \"brst\"\n"),
+        &[("5:6", "no PROTOCOL@LINK"), ("6:10", "did you mean `burst`?")],
+    ),
     (gyro!("[[output]]\n"), &[("4:1", "an output needs a destination, such as to = \"mpu@pty\"")]),
     (
         gyro!("[[output]]\nto = \"mpu@pty\"\nlayout = \"burst\"\n"),
