@@ -1,4 +1,4 @@
-//! What a sample, a packet and a run cost. `cargo bench --bench emulator` prints time and elements a second; docs/timing.md explains the figures.
+//! What a sample, a packet and a run cost. `cargo bench --bench emulator` prints time and elements a second; docs/benchmarks.md has the figures.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ratetable::player::{BLOCK, Player};

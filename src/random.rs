@@ -43,12 +43,15 @@ mod tests {
 
     #[test]
     fn the_same_seed_and_name_repeat_and_any_other_does_not() {
-        assert_eq!(normals(7, "gyro/white/x"), normals(7, "gyro/white/x"));
+        assert_eq!(normals(7, "gyro/white_noise/x"), normals(7, "gyro/white_noise/x"));
         let n = 20_000f64;
-        for (seed, name) in
-            [(8, "gyro/white/x"), (7, "gyro/white/y"), (7, "accel/white/x"), (7, "gyro/walk/x")]
-        {
-            let (a, b) = (normals(7, "gyro/white/x"), normals(seed, name));
+        for (seed, name) in [
+            (8, "gyro/white_noise/x"),
+            (7, "gyro/white_noise/y"),
+            (7, "accel/white_noise/x"),
+            (7, "gyro/bias_walk/x"),
+        ] {
+            let (a, b) = (normals(7, "gyro/white_noise/x"), normals(seed, name));
             let correlation = a.iter().zip(&b).map(|(a, b)| a * b).sum::<f64>() / n;
             assert!(correlation.abs() < 4.0 / n.sqrt(), "{seed} {name}: {correlation}");
         }

@@ -109,7 +109,7 @@ impl Plan {
         match self.resolved.parse::<toml::Table>() {
             Ok(mut scene) if end != self.duration => {
                 scene.insert("duration".into(), end.to_string().into());
-                toml::to_string(&scene).unwrap_or_default()
+                scene.to_string()
             }
             _ => self.resolved.clone(),
         }
@@ -191,7 +191,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         reference: reference.0,
         outputs: outputs.outputs,
         drawn: Vec::new(),
-        resolved: toml::to_string(&resolved).unwrap_or_default(),
+        resolved: resolved.to_string(),
     }
 }
 

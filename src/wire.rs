@@ -35,6 +35,7 @@ pub struct Packet {
 impl Packet {
     /// A packet of these bytes, due then; longer ones are cut at [`MAX_PACKET`], which no protocol here reaches.
     pub fn new(due: SimTime, carries: u8, bytes: &[u8]) -> Packet {
+        debug_assert!(bytes.len() <= MAX_PACKET, "{} bytes", bytes.len());
         let len = bytes.len().min(MAX_PACKET);
         let mut packet = Packet { due, carries, replaced: [0; 3], len: len as u16, bytes: [0; MAX_PACKET] };
         packet.bytes[..len].copy_from_slice(&bytes[..len]);

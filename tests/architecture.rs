@@ -35,8 +35,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     // A config packet is in scene time and SYSTEM_TIME carries the scene's date; the load is counted over ticks.
     ("wire", &["sensor", "earth", "schedule"]),
     ("link", &["os"]),
-    ("report", &[]),
-    ("score", &["report"]),
+    ("score", &[]),
+    // The report of a run holds its score, plain data.
+    ("report", &["score"]),
     // The scene's plan, its trajectory and its sensors are what a session plays and reports on.
     (
         "session",
@@ -57,8 +58,9 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// What of the outside only some rooms may touch.
 const OUTSIDE: &[(&str, &[&str])] = &[
-    // The cells of a study are independent: scoped threads share them out and end with it.
-    ("std::thread", &["session", "link", "study"]),
+    // The demonstration of `cli` runs a firmware, which has a processor of its own; a study spreads runs that have
+    // nothing to do with one another over the processors.
+    ("std::thread", &["session", "link", "cli", "study"]),
     // `os` reads what the kernel shows as files of its own: who holds a port, what a device is.
     ("std::fs", &["scene", "dataset", "report", "link", "os", "score", "study"]),
     ("std::net", &["link"]),

@@ -229,6 +229,9 @@ fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<
     failed.extend(
         command.filter(|code| *code != 0).map(|code| format!("the command ended with exit code {code}")),
     );
+    if command == Some(0) && report.links.iter().all(|link| link.packets == 0) {
+        failed.push("the command ended before anything was sent: it must open the link, {} in its arguments or $RATETABLE_LINK".into());
+    }
     let value = serde_json::to_value(&*report)?;
     failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
     report.ok = failed.is_empty();

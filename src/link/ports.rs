@@ -28,15 +28,8 @@ impl fmt::Display for Port {
     }
 }
 
-/// Words in what a device says of itself, and the target that speaks to it.
-const TARGETS: &[(&str, &str)] = &[
-    ("px4", "px4"),
-    ("3d robotics", "px4"),
-    ("ardupilot", "ardupilot"),
-    ("hex/proficnc", "ardupilot"),
-    ("cubepilot", "ardupilot"),
-    ("inav", "inav"),
-];
+/// Words in what a flight controller that speaks MAVLink says of itself.
+const MAVLINK: &[&str] = &["px4", "3d robotics", "ardupilot", "hex/proficnc", "cubepilot"];
 
 /// The serial ports of this machine, by path.
 pub fn ports() -> Vec<Port> {
@@ -57,10 +50,9 @@ fn described(path: String, kind: SerialPortType) -> Port {
     };
     let said = [&manufacturer, &product].map(|text| text.clone().unwrap_or_default());
     let said = said.join(" ").to_lowercase();
-    let target = TARGETS.iter().find(|(word, _)| said.contains(word));
-    let protocol = target.map_or("mpu", |(_, target)| target);
+    let protocol = if MAVLINK.iter().any(|word| said.contains(word)) { "mavlink" } else { "mpu" };
     Port {
-        command: format!("ratetable run --to {protocol}@{path}"),
+        command: format!("ratetable run still --to {protocol}@{path}"),
         path: path.into(),
         product,
         manufacturer,
@@ -86,15 +78,15 @@ mod tests {
     #[test]
     fn a_flight_controller_comes_with_its_own_command() {
         let cases = [
-            (usb("3D Robotics", "PX4 FMU v5.x"), "px4@/dev/ttyACM0"),
-            (usb("ArduPilot", "Pixhawk1"), "ardupilot@/dev/ttyACM0"),
-            (usb("INAV", "MATEKF722"), "inav@/dev/ttyACM0"),
+            (usb("3D Robotics", "PX4 FMU v5.x"), "mavlink@/dev/ttyACM0"),
+            (usb("ArduPilot", "Pixhawk1"), "mavlink@/dev/ttyACM0"),
+            (usb("INAV", "MATEKF722"), "mpu@/dev/ttyACM0"),
             (usb("FTDI", "FT232R USB UART"), "mpu@/dev/ttyACM0"),
             (SerialPortType::Unknown, "mpu@/dev/ttyACM0"),
         ];
         for (kind, to) in cases {
             let port = described("/dev/ttyACM0".to_owned(), kind);
-            assert_eq!(port.command, format!("ratetable run --to {to}"));
+            assert_eq!(port.command, format!("ratetable run still --to {to}"));
         }
     }
 

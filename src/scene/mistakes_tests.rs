@@ -369,6 +369,11 @@ const REST: &[Case] = &[
         gyro!("[reference]\nmetod = \"paper\"\n"),
         &[("5:1", "not a key of [reference]: did you mean `method`?")],
     ),
+    (gyro!("[[output]]\nlayout = \"burst\"\n"), &[("4:1", "an output needs a destination")]),
+    (
+        gyro!("[[output]]\nto = \"mpu\"\nlayout = \"brst\"\n"),
+        &[("5:6", "no PROTOCOL@LINK"), ("6:10", "did you mean `burst`?")],
+    ),
     (gyro!("[[output]]\n"), &[("4:1", "an output needs a destination, such as to = \"mpu@pty\"")]),
     (
         gyro!("[[output]]\nto = \"mpu@pty\"\nlayout = \"burst\"\n"),

@@ -75,20 +75,19 @@ pub(super) fn outputs(top: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Outp
 }
 
 fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Output> {
+    let layout =
+        section.has("layout").then(|| match section.word("layout", &["separate", "burst"], "separate") {
+            "burst" => Layout::Burst,
+            _ => Layout::Separate,
+        });
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
     let to = section.text("to", None)?;
     let to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
-    let mut wire = wire::Options::default();
-    if section.has("layout") {
-        wire.layout = match section.word("layout", &["separate", "burst"], "separate") {
-            "burst" => Some(Layout::Burst),
-            _ => Some(Layout::Separate),
-        };
-        if to.protocol != Protocol::Mpu {
-            section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
-        }
+    let wire = wire::Options { layout };
+    if layout.is_some() && to.protocol != Protocol::Mpu {
+        section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
     }
     if let Some(Err(why)) = sensors.map(|sensors| wire::check(to.protocol, &wire, sensors)) {
         section.mistake("layout", why);

@@ -34,9 +34,9 @@ fn every_value_of_every_part_names_its_source() {
     }
     let unsourced = parts::Part {
         names: &["X"],
+        inside: &[],
         about: "",
         file: "x.toml",
-        inside: &[],
         text: "[gyro]\nrange = \"1 rad/s\"\n",
     };
     let mistake = scene::parts::sources(&unsourced).unwrap_err().to_string();
@@ -127,5 +127,18 @@ fn the_noise_of_a_part_is_its_density_at_the_rate() {
         let sigma =
             white_noise::sigma(&plan.sensors[0].values, SensorKind::Gyro, plan.sensors[0].rate).unwrap();
         assert!((sigma.x.to_degrees() / (density * 50f64.sqrt()) - 1.0).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn a_part_inside_another_is_known_for_its_own_sensor_alone() {
+    for part in parts::all() {
+        for (name, kind) in part.inside {
+            assert_eq!(plan(name, *kind, "", 1).unwrap().sensors[0].part, Some(part.names[0]));
+            for other in SensorKind::ALL.into_iter().filter(|other| other != kind) {
+                let error = plan(name, other, "", 1).unwrap_err();
+                assert!(error.contains("is no part known here"), "{name} as {other}: {error}");
+            }
+        }
     }
 }

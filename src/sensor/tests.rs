@@ -457,3 +457,23 @@ fn where_blocks_begin_changes_nothing() {
         whole.iter().filter(|(_, reading)| reading.sensor == 0).map(|(_, reading)| reading.k).collect();
     assert_eq!(gyro_ticks, (0..600).collect::<Vec<_>>());
 }
+
+#[test]
+fn an_averaged_sample_is_the_mean_over_the_interval_that_ends_at_its_tick() {
+    let scene = |sampling: &str| {
+        let text = format!(
+            "[[motion]]\nkind = \"rotate\"\nroll = \"10 deg/s\"\nduration = \"25 ms\"\n[[motion]]\nkind = \"rotate\"\nroll = \"50 deg/s\"\nduration = \"25 ms\"\n[gyro]\nrate = \"100 Hz\"\nsampling = \"{sampling}\"\n"
+        );
+        let plan = Plan::parse(&text, "s", "s", &[]).unwrap();
+        let mut seen = Vec::new();
+        let mut player = crate::player::Player::new(&plan, SimTime(60_000_000), 2);
+        let played: Result<(), ()> = player.play(|moment| {
+            seen.push((moment.readings[0].value.v.x.to_degrees() * 1e6).round() / 1e6);
+            Ok(())
+        });
+        played.unwrap();
+        seen
+    };
+    assert_eq!(scene("point"), [10.0, 10.0, 10.0, 50.0, 50.0, 0.0]);
+    assert_eq!(scene("average"), [10.0, 10.0, 10.0, 30.0, 50.0, 50.0], "half of 20 to 30 ms at each rate");
+}

@@ -12,6 +12,15 @@ use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hi
 const SYSTEM: u8 = 1;
 const COMPONENT: u8 = 51;
 
+/// MAV_AUTOPILOT_INVALID: this is no autopilot.
+const NO_AUTOPILOT: u8 = 8;
+/// MAV_MODE_FLAG_HIL_ENABLED.
+const HARDWARE_IN_THE_LOOP: u8 = 0x20;
+/// MAV_STATE_ACTIVE.
+const ACTIVE: u8 = 4;
+/// The `mavlink_version` of every dialect in use.
+const DIALECT_VERSION: u8 = 3;
+
 const MICROTESLA_A_GAUSS: f64 = 100.0;
 const MASKS: [u32; 3] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG];
 
@@ -49,10 +58,10 @@ impl Mavlink {
         let alive = heartbeat::Repr {
             custom_mode: 0,
             kind: 0,
-            autopilot: 8,
-            base_mode: 0x20,
-            system_status: 4,
-            mavlink_version: 3,
+            autopilot: NO_AUTOPILOT,
+            base_mode: HARDWARE_IN_THE_LOOP,
+            system_status: ACTIVE,
+            mavlink_version: DIALECT_VERSION,
         };
         let clock = system_time::Repr {
             time_unix_usec: self.unix_us_at_start.map_or(0, |start| start + us),

@@ -80,6 +80,12 @@ fn the_commands_own_exit_code_is_handed_on() {
 }
 
 #[test]
+fn a_command_that_never_reads_is_no_success() {
+    let said = assert_code(&run(&["--", "true"]), 1);
+    assert!(said.contains("the command ended before anything was sent"), "{said}");
+}
+
+#[test]
 fn nobody_on_the_pty_in_time_is_exit_code_2_and_says_where_nobody_came() {
     let said = assert_code(&run(&["--wait", "0.3s"]), 2);
     let ready = said.lines().find_map(|line| line.strip_prefix("ready: mpu@")).expect("a ready line");
