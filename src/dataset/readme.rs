@@ -151,8 +151,8 @@ fn reference_section(quality: &Quality) -> String {
 `reference.csv` is attitude as a program without the truth would compute it: {how}. It is normalised, in the same
 axes and conventions as `truth.csv`. **`truth.csv` is exact** and what estimates are to be judged by.
 
-Against the truth the reference is off by {:e}° RMS, {:e}° at most, {:e}° at the end; before normalising its norm
-ends at 1 {norm_error:+e}.
+Against the truth the reference is off by {:.3e}° RMS, {:.3e}° at most, {:.3e}° at the end; before normalising, its norm
+is off 1 by {norm_error:.3e} at the end.
 ",
         error_deg.rms, error_deg.max, error_deg.last
     )
