@@ -12,10 +12,12 @@
 
 mod axes;
 mod euler;
+mod euler_sequence;
 mod rotation;
 
 pub use axes::Axes;
 pub use euler::Euler;
+pub use euler_sequence::EulerSequence;
 pub use rotation::{Attitude, Rotation, angle_between, exp, log, rotate};
 
 use glam::DVec3;

@@ -5,6 +5,7 @@
 //! list` and the docs print the same lists, so a key cannot be accepted and left undocumented.
 
 use crate::double::Double;
+use crate::geometry::Attitude;
 use crate::quantity::{Kind, Resolution};
 use crate::time::SimTime;
 use glam::DVec3;
@@ -38,10 +39,12 @@ pub enum Takes {
     Duration,
     /// One of these words.
     Word(&'static [&'static str]),
+    /// An array of attitudes, each with its time.
+    Keyframes,
 }
 
 /// A value as read: SI units (µT for a field), the program's own axes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Value {
     /// Of [`Takes::Scalar`].
     Scalar(Double),
@@ -53,6 +56,8 @@ pub enum Value {
     Time(SimTime),
     /// Of [`Takes::Word`].
     Word(&'static str),
+    /// Of [`Takes::Keyframes`], in the order written.
+    Keyframes(Vec<(SimTime, Attitude)>),
 }
 
 /// The values of one table, by key. A getter returns `None` for a key that is absent and has no default.
@@ -116,6 +121,14 @@ impl Values {
     pub fn word(&self, key: &str) -> Option<&'static str> {
         match self.0.get(key)? {
             Value::Word(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// Attitudes with their times.
+    pub fn keyframes(&self, key: &str) -> Option<&[(SimTime, Attitude)]> {
+        match self.0.get(key)? {
+            Value::Keyframes(value) => Some(value),
             other => mismatch(key, other),
         }
     }

@@ -1,15 +1,20 @@
-//! What is true: attitude, angular rate, specific force and field at any time, in closed form.
+//! What is true: attitude, angular rate, specific force and field at any time.
 //!
-//! A scene's motion is a list of segments. Each is a [`Motion`], evaluated from the segment's own start and never
-//! accumulated from samples, so that t may be asked in any order and an hour at full scale loses nothing.
+//! A scene's motion is a list of segments. Each is a [`Motion`], evaluated from the segment's own start in closed
+//! form, or where there is none from nodes solved once to 10⁻¹⁰ degrees, and never accumulated from samples: t may be
+//! asked in any order and an hour at full scale loses nothing.
 //! To add a kind: one file beside this one and one line in [`KINDS`].
 
 mod circle;
 mod cone;
 mod hold;
+mod integrated;
 pub mod method;
+mod random;
+mod rock;
 mod rotate;
 mod trajectory;
+mod waypoints;
 
 pub use trajectory::{Force, Push, Trajectory, Truth};
 
@@ -49,6 +54,12 @@ pub struct Kinematics {
 pub struct Context {
     /// How long the segment lasts.
     pub duration: SimTime,
+    /// Where the motion finds the vehicle.
+    pub start: Attitude,
+    /// The scene's seed, from which a random motion comes.
+    pub seed: u64,
+    /// Which of the scene's motions it is, from 0: names its streams of random numbers.
+    pub index: usize,
     /// The strength of gravity, m/s².
     pub gravity: f64,
     /// +1 or −1: the sign that body y and z have in the scene's axes against Forward-Right-Down.
@@ -72,7 +83,8 @@ pub struct MotionKind {
 }
 
 /// Every kind of motion.
-pub static KINDS: [&MotionKind; 4] = [&hold::KIND, &rotate::KIND, &cone::KIND, &circle::KIND];
+pub static KINDS: [&MotionKind; 7] =
+    [&hold::KIND, &rotate::KIND, &cone::KIND, &circle::KIND, &rock::KIND, &waypoints::KIND, &random::KIND];
 
 /// Standing still, after the last segment and when a scene has no motion.
 pub fn rest() -> Box<dyn Motion> {

@@ -11,6 +11,7 @@ pub mod builtin;
 pub mod document;
 mod draw;
 mod fixed_keys;
+mod keyframes;
 mod output;
 pub mod parts;
 mod reader;
@@ -137,7 +138,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
 
     let start = vehicle::start(&top);
     let earth = vehicle::earth(&top);
-    let motions = vehicle::motions(&top, earth.gravity.length());
+    let motions = vehicle::motions(&top, earth.gravity.length(), start.attitude);
     let forces = vehicle::forces(&top);
     let sensors = sensors::sensors(&top);
     let outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));

@@ -18,8 +18,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("quantity", &["double"]),
     ("random", &[]),
     ("geometry", &[]),
-    // A key is declared with the kind of quantity it takes, and a value may be a time.
-    ("keys", &["double", "quantity", "time"]),
+    // A key is declared with the kind of quantity it takes, and a value may be a time or an attitude.
+    ("keys", &["double", "quantity", "time", "geometry"]),
     // The system calls, the only place of `unsafe`.
     ("os", &[]),
     ("earth", &[]),

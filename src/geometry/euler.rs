@@ -27,7 +27,7 @@ pub struct Euler {
 
 /// Roll and yaw cannot be told apart when one of the two amplitudes is below this: 10⁻¹³ is a thousand
 /// roundings, and giving roll's share to yaw there moves the rotation by less than 10⁻¹¹ degrees.
-const LOCK: f64 = 1e-13;
+pub(super) const LOCK: f64 = 1e-13;
 
 impl Euler {
     /// The angles of a unit quaternion.
@@ -59,12 +59,12 @@ impl Euler {
     }
 }
 
-fn polar(x: f64, y: f64) -> (f64, f64) {
+pub(super) fn polar(x: f64, y: f64) -> (f64, f64) {
     (libm::hypot(x, y), libm::atan2(y, x))
 }
 
 /// The same angle in (−π, π]. Adding 0 turns −0 into 0.
-fn wrap(angle: f64) -> f64 {
+pub(super) fn wrap(angle: f64) -> f64 {
     let turns = libm::ceil((angle - PI) / TAU);
     angle - TAU * turns + 0.0
 }

@@ -302,7 +302,7 @@ const MOTIONS: &[Case] = &[
     ),
     (
         gyro!("[start]\nquaternion = [1, 0, 0, 0]\nattitude = \"0 deg\"\n"),
-        &[("5:14", "`attitude` already says how it starts")],
+        &[("5:14", "`attitude` is given beside it")],
     ),
 ];
 

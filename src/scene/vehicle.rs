@@ -5,11 +5,11 @@ use super::section::Section;
 use super::suggest;
 use crate::double::Double;
 use crate::earth::{self, Day};
-use crate::geometry::{Attitude, Euler, Nav, Vector};
+use crate::geometry::{Attitude, Nav, Vector};
 use crate::motion::{self, Context, Force, Motion, Push};
 use crate::quantity::{self, Kind, Sign};
 use crate::time::SimTime;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn plain(triple: [Double; 3]) -> DVec3 {
@@ -24,18 +24,7 @@ pub(super) struct Start {
 /// `[start]`: three angles or a quaternion.
 pub(super) fn start(top: &Section<'_>) -> Start {
     let section = top.table("start");
-    let q = if section.has("quaternion") {
-        if section.has("attitude") {
-            section.mistake("quaternion", "`attitude` already says how it starts: keep one of the two");
-        }
-        section.quaternion("quaternion").map(|[w, x, y, z]| DQuat::from_xyzw(x, y, z, w))
-    } else {
-        // Half angles to full precision: a decimal in degrees is not its nearest double in radians.
-        section.vector("attitude", Kind::ANGLE, Some("[0, 0, 0] deg")).map(|angles| {
-            Euler::quat_of_half_angles(angles.map(|angle| (angle / Double::from(2.0)).sin_cos()))
-        })
-    };
-    let attitude = top.axes().attitude_in(q.unwrap_or(DQuat::IDENTITY));
+    let attitude = section.attitude(Some("[0, 0, 0] deg")).unwrap_or(Attitude::IDENTITY);
     Start { attitude, resolved: section.finish() }
 }
 
@@ -143,17 +132,25 @@ pub(super) struct Motions {
     pub resolved: Vec<toml::Value>,
 }
 
-/// Every `[[motion]]`, read by the declaration of its kind.
-pub(super) fn motions(top: &Section<'_>, gravity: f64) -> Motions {
+/// Every `[[motion]]`, read by the declaration of its kind; the first finds the vehicle at `start`.
+pub(super) fn motions(top: &Section<'_>, gravity: f64, mut start: Attitude) -> Motions {
     let (mut motions, mut resolved) = (Vec::new(), Vec::new());
-    for section in top.tables("motion") {
-        motions.extend(motion(&section, gravity));
+    for (index, section) in top.tables("motion").into_iter().enumerate() {
+        if let Some((duration, motion)) = motion(&section, gravity, index, start) {
+            start = motion.at(start, duration.exact_seconds()).attitude;
+            motions.push((duration, motion));
+        }
         resolved.push(section.finish().into());
     }
     Motions { motions, resolved }
 }
 
-fn motion(section: &Section<'_>, gravity: f64) -> Option<(SimTime, Box<dyn Motion>)> {
+fn motion(
+    section: &Section<'_>,
+    gravity: f64,
+    index: usize,
+    start: Attitude,
+) -> Option<(SimTime, Box<dyn Motion>)> {
     let names = motion::KINDS.map(|kind| kind.name);
     let Some(name) = section.text("kind", None) else {
         if !section.has("kind") {
@@ -183,7 +180,14 @@ fn motion(section: &Section<'_>, gravity: f64) -> Option<(SimTime, Box<dyn Motio
     }
     // Where the duration is a mistake already, nothing else is blamed on it.
     let in_time = duration.unwrap_or(SimTime::FOREVER);
-    let context = Context { duration: in_time, gravity, body_sign: section.axes().body_sign() };
+    let context = Context {
+        duration: in_time,
+        start,
+        seed: section.seed(),
+        index,
+        gravity,
+        body_sign: section.axes().body_sign(),
+    };
     match (kind.build)(&values, &context) {
         Ok(motion) => Some((duration?, motion)),
         Err(error) => {

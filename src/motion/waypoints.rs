@@ -1,0 +1,169 @@
+//! Attitudes at given times, with a smooth turn about one axis from each to the next.
+//!
+//! Over an interval of length T from q₀ to q₁, with u = t/T and r = log(q₀* ⊗ q₁):
+//! `q = q₀ ⊗ exp(s(u)·r)`, `w = s′(u)/T·r`, `s(u) = 10u³ − 15u⁴ + 6u⁵`: the least-jerk course from rest to rest
+//! (T. Flash and N. Hogan, *The coordination of arm movements*, J. Neuroscience 5(7), 1985). Attitude, rate and
+//! angular acceleration are continuous throughout, the last two 0 at each key: it comes to rest there, as a rate
+//! table does. Each turn goes the shorter way.
+
+use super::{Built, Context, Kinematics, Motion, MotionKind};
+use crate::double::Double;
+use crate::geometry::{Attitude, Vector, exp, log};
+use crate::keys::{Key, KeyError, Takes, Values};
+use crate::time::SimTime;
+use glam::{DQuat, DVec3};
+
+pub(super) static KIND: MotionKind = MotionKind {
+    name: "waypoints",
+    about: "turns smoothly from attitude to attitude, at rest at each",
+    keys: &[Key {
+        name: "keys",
+        takes: Takes::Keyframes,
+        default: None,
+        about: "each a time `t` since the motion's start and an `attitude` or a `quaternion`",
+    }],
+    build,
+};
+
+/// From the attitude at one key to that at the next.
+#[derive(Clone, Copy, Debug)]
+struct Leg {
+    start: SimTime,
+    end: SimTime,
+    /// Body to nav at its start.
+    from: DQuat,
+    /// The rotation vector to its end, rad in body axes.
+    turn: DVec3,
+}
+
+#[derive(Debug)]
+struct Waypoints {
+    legs: Vec<Leg>,
+}
+
+fn build(values: &Values, context: &Context) -> Built {
+    let keys = values.keyframes("keys").unwrap_or_default();
+    let Some((last, _)) = keys.last() else {
+        return Err(KeyError::new(
+            "kind",
+            "`waypoints` needs `keys`, such as keys = [{ t = \"2 s\", attitude = \"[0, 30, 0] deg\" }]",
+        ));
+    };
+    if *last > context.duration {
+        let message = format!("the last is at {last}, but the motion ends at {}", context.duration);
+        return Err(KeyError::new("keys", message));
+    }
+    if let Some(pair) = keys.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
+        let message = format!("{} comes after {}: write them in order of time", pair[1].0, pair[0].0);
+        return Err(KeyError::new("keys", message));
+    }
+    if keys[0].0 == SimTime::ZERO && keys[0].1.angle_to(context.start) > AGREE {
+        let message = "the one at 0 s is not the attitude at which the motion finds the vehicle: leave it out, or write a key of its own for going there";
+        return Err(KeyError::new("keys", message));
+    }
+    Ok(Box::new(Waypoints::new(context.start, keys)))
+}
+
+/// A first key at 0 s that is nearer than this (rad) to where the vehicle is says the same.
+const AGREE: f64 = 1e-9;
+
+impl Waypoints {
+    /// From `start` at 0 s; a key at 0 s adds nothing.
+    fn new(start: Attitude, keys: &[(SimTime, Attitude)]) -> Waypoints {
+        let mut legs = Vec::with_capacity(keys.len());
+        let mut here = (SimTime::ZERO, start.q);
+        for &(end, key) in keys.iter().filter(|(t, _)| *t > SimTime::ZERO) {
+            let (start, from) = here;
+            legs.push(Leg { start, end, from, turn: log(from.conjugate() * key.q) });
+            // Of the key's two signs that which the turn leads to: the sign is continuous in time.
+            here = (end, if from.dot(key.q) < 0.0 { -key.q } else { key.q });
+        }
+        if legs.is_empty() {
+            legs.push(Leg { start: SimTime::ZERO, end: SimTime(1), from: start.q, turn: DVec3::ZERO });
+        }
+        Waypoints { legs }
+    }
+}
+
+impl Motion for Waypoints {
+    fn at(&self, _: Attitude, t: Double) -> Kinematics {
+        let after = self.legs.partition_point(|leg| leg.start.seconds() <= t.to_f64());
+        let leg = self.legs[after.saturating_sub(1)];
+        let length = (leg.end - leg.start).seconds();
+        let u = ((t - leg.start.exact_seconds()).to_f64() / length).clamp(0.0, 1.0);
+        let share = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+        let speed = 30.0 * u * u * (1.0 - u) * (1.0 - u) / length;
+        Kinematics {
+            attitude: Attitude::from_quat(leg.from * exp(leg.turn * share)),
+            rate: Vector::from_vec(leg.turn * speed),
+            acceleration: Vector::ZERO,
+        }
+    }
+
+    fn fastest(&self) -> f64 {
+        // s′ is at most 15/8; it changes over a fraction of the leg.
+        let of = |leg: &Leg| (1.875 * leg.turn.length() + 6.0) / (leg.end - leg.start).seconds();
+        self.legs.iter().map(of).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::rate_is_the_derivative_of_attitude;
+    use super::*;
+    use crate::time::NANOS;
+
+    fn keys() -> Vec<(SimTime, Attitude)> {
+        let at = |ms: i64, v: [f64; 3]| {
+            (SimTime(ms * NANOS / 1000), Attitude::from_quat(exp(DVec3::from_array(v))))
+        };
+        // One is past half a turn from the one before, and one comes back to where it was.
+        vec![
+            at(500, [0.3, 0.0, 0.0]),
+            at(1700, [0.3, -0.7, 2.5]),
+            at(2000, [-0.2, 0.1, -1.5]),
+            at(3000, [-0.2, 0.1, -1.5]),
+        ]
+    }
+
+    #[test]
+    fn its_rate_is_the_derivative_of_its_attitude() {
+        let start = Attitude::from_quat(exp(DVec3::new(0.3, -0.7, 1.1)));
+        let motion = Waypoints::new(start, &keys());
+        rate_is_the_derivative_of_attitude(&motion, start, SimTime(4 * NANOS));
+    }
+
+    #[test]
+    fn it_is_at_each_key_in_time_at_rest_and_holds_after_the_last() {
+        let start = Attitude::from_quat(exp(DVec3::new(0.3, -0.7, 1.1)));
+        let motion = Waypoints::new(start, &keys());
+        assert_eq!(motion.at(start, Double::ZERO).attitude, start);
+        for (t, key) in keys() {
+            for (ns, near) in [(t.0 - 1, 1e-12), (t.0, 1e-12), (t.0 + 1, 1e-12)] {
+                let now = motion.at(start, SimTime(ns).exact_seconds());
+                assert!(now.attitude.angle_to(key) < near, "at {ns} ns");
+                assert!(now.rate.length() < 1e-12, "at {ns} ns: {:?}", now.rate);
+            }
+        }
+        let end = motion.at(start, Double::from(100.0));
+        assert!(end.attitude.angle_to(keys()[3].1) < 1e-15 && end.rate.length() == 0.0);
+    }
+
+    #[test]
+    fn its_sign_is_continuous_in_time() {
+        let motion = Waypoints::new(Attitude::IDENTITY, &keys());
+        let mut last = DQuat::IDENTITY;
+        for ms in 0..4000 {
+            let q = motion.at(Attitude::IDENTITY, SimTime(ms * NANOS / 1000).exact_seconds()).attitude.q;
+            assert!((q - last).length() < 0.02, "at {ms} ms");
+            last = q;
+        }
+    }
+
+    #[test]
+    fn one_key_at_the_start_is_standing_still() {
+        let motion = Waypoints::new(Attitude::IDENTITY, &[(SimTime::ZERO, Attitude::IDENTITY)]);
+        let later = motion.at(Attitude::IDENTITY, Double::from(3.0));
+        assert_eq!((later.attitude, later.rate), (Attitude::IDENTITY, Vector::ZERO));
+    }
+}
