@@ -230,4 +230,6 @@ impl std::error::Error for SceneError {}
 #[cfg(test)]
 mod mistakes_tests;
 #[cfg(test)]
+mod motions_tests;
+#[cfg(test)]
 mod tests;
