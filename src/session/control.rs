@@ -352,7 +352,7 @@ impl Run {
         let paced = self.job.speed != Speed::Max;
         let heard = self.heard.borrow();
         Ok(Outcome {
-            played: self.played(&tallies),
+            played: self.played(&gone),
             interrupted: self.interrupted,
             realtime: granted.priority,
             memory_locked: granted.memory,
@@ -365,10 +365,11 @@ impl Run {
     }
 
     /// The end if all was played, else where the last packet was due.
-    fn played(&self, tallies: &[LinkTally]) -> SimTime {
+    fn played(&self, gone: &[Option<std::io::ErrorKind>]) -> SimTime {
         let stopped = self.interrupted || self.ended.is_some() || self.left.is_some();
-        let cut_short = stopped || tallies.iter().all(|tally| tally.packets == 0);
-        let last = SimTime(self.shared.scene_ns.load(Ordering::Relaxed));
+        let cut_short = stopped || !gone.contains(&None);
+        // An end is exclusive: a nanosecond on, so that the last packet is within.
+        let last = SimTime(self.shared.scene_ns.load(Ordering::Relaxed) + 1);
         if cut_short { last.min(self.job.end) } else { self.job.end }
     }
 
