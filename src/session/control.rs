@@ -303,16 +303,15 @@ impl Run {
         self.shared.stop.store(true, Ordering::Relaxed);
         let mut left = [0; 3];
         loop {
+            // Asked before emptying: what the producer pushed last is then in the ring.
+            let over = producer.is_finished();
             for (sum, more) in left.iter_mut().zip(pacer.left()) {
                 *sum += more;
             }
-            if producer.is_finished() {
+            if over {
                 break;
             }
             thread::sleep(Duration::from_micros(100));
-        }
-        for (sum, more) in left.iter_mut().zip(pacer.left()) {
-            *sum += more;
         }
         (producer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), left)
     }
