@@ -113,11 +113,12 @@ fn write_in_blocks(
     if end == SimTime::FOREVER {
         return Err(DatasetError::Endless);
     }
+    let settled = reference::settled(plan, end)?;
     let folder = Folder::open(dir, options.force)?;
     let tables = table::of(plan, !options.estimates.is_empty());
     let mut book = Book::open(&tables, &folder, &options.formats)?;
     let clipped = play(plan, end, block, &mut book, options.progress, options.stop)?;
-    let quality = reference::write(plan, end, |step| {
+    let quality = reference::write(plan, settled.as_ref(), end, |step| {
         book.row(table::TRUTH + 1 + plan.sensors.len(), step.t, &table::reference(plan.axes, step.attitude))
     })?;
     for (t, attitude) in options.estimates {
@@ -125,7 +126,8 @@ fn write_in_blocks(
     }
     let files = book.close(&folder)?;
 
-    let (readme, scene) = (readme::text(plan, &files, quality.as_ref()), plan.resolved_until(end));
+    let readme = readme::text(plan, &files, quality.as_ref());
+    let scene = plan.resolved_until(end, settled.as_ref().map(|settled| &settled.reference));
     let mut others = vec![("README.md", readme.as_bytes()), ("scene.toml", scene.as_bytes())];
     others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
     for (name, contents) in &others {

@@ -25,7 +25,7 @@ pub use document::Place;
 pub use draw::Drawn;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
 pub use output::{Destination, Output};
-pub use reference::Reference;
+pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
 
 use crate::earth::Day;
@@ -105,15 +105,17 @@ impl Plan {
         }
     }
 
-    /// The scene as resolved, lasting until `end`: playing it gives the bytes of a run that ended there.
-    pub fn resolved_until(&self, end: SimTime) -> String {
-        match self.resolved.parse::<toml::Table>() {
-            Ok(mut scene) if end != self.duration => {
-                scene.insert("duration".into(), end.to_string().into());
-                scene.to_string()
-            }
-            _ => self.resolved.clone(),
+    /// The scene as resolved, lasting until `end`, with the reference as it was settled: playing it gives the bytes of
+    /// a run that ended there.
+    pub fn resolved_until(&self, end: SimTime, reference: Option<&Reference>) -> String {
+        let Ok(mut scene) = self.resolved.parse::<toml::Table>() else { return self.resolved.clone() };
+        if end != self.duration {
+            scene.insert("duration".into(), end.to_string().into());
         }
+        if let (Some(reference), Some(table)) = (reference, scene.get_mut("reference")) {
+            table.as_table_mut().into_iter().for_each(|table| reference.write(table));
+        }
+        scene.to_string()
     }
 
     /// The sensor at work.

@@ -82,6 +82,11 @@ impl Rate {
         Rate { numerator: hertz as u64, denominator: 1 }
     }
 
+    /// `numerator / denominator` times this one; `None` where that is zero or beyond the range of numbers.
+    pub fn times(self, numerator: u64, denominator: u64) -> Option<Rate> {
+        Rate::new(self.numerator.checked_mul(numerator)?, self.denominator.checked_mul(denominator)?)
+    }
+
     /// Hertz, rounded to the nearest double.
     pub fn as_hz(self) -> f64 {
         self.numerator as f64 / self.denominator as f64

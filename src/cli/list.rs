@@ -137,10 +137,11 @@ fn methods() -> String {
             method.order.to_string(),
             method.input.to_string(),
             precisions.join(", "),
+            method.ns_per_step.to_string(),
             method.about.into(),
         ]
     };
-    table(&["name", "order", "input a step", "studied in", "about"], &METHODS.map(row))
+    table(&["name", "order", "input a step", "studied in", "ns a step", "about"], &METHODS.map(row))
 }
 
 fn ports() -> String {

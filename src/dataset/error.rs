@@ -1,6 +1,6 @@
 //! Why a dataset could not be written or read.
 
-use crate::motion::method::ReferenceError;
+use crate::motion::method::{ReferenceError, ToleranceError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +29,9 @@ pub enum DatasetError {
     /// The method of `[reference]` could not go on.
     #[error("reference.csv cannot be computed: {0}; choose another `method` in [reference]")]
     Reference(#[source] ReferenceError),
+    /// `method = "auto"` found none.
+    #[error("reference.csv cannot be computed: {0}; `tolerance` in [reference] is what it goes by")]
+    Tolerance(#[source] ToleranceError),
     /// Asked to stop.
     #[error("stopped before the dataset was complete; nothing was kept")]
     Stopped,

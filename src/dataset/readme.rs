@@ -134,11 +134,12 @@ fn files_section(files: &[FileEntry]) -> String {
 }
 
 fn reference_section(quality: &Quality) -> String {
-    let Quality { from, method, error_deg, norm_error } = quality;
+    let Quality { from, method, rate_hz, chosen, error_deg, norm_error } = quality;
+    let why = chosen.as_ref().map_or(String::new(), |why| format!(" Method and rate were chosen: {why}."));
     let how = match *from {
         "gyro" => format!(
-            "integrated by the method `{method}` from an error-free gyroscope, at the gyroscope's rate from t = 0 (a \
-             method of several increments a step has a row a step)"
+            "integrated by the method `{method}` from an error-free gyroscope of {rate_hz} Hz from t = 0 (a method of \
+             several increments a step has a row a step)"
         ),
         _ => format!(
             "computed (`{method}`) from an error-free accelerometer and magnetometer, external forces and the \
@@ -148,7 +149,7 @@ fn reference_section(quality: &Quality) -> String {
     format!(
         "## Reference
 
-`reference.csv` is attitude as a program without the truth would compute it: {how}. It is normalised, in the same
+`reference.csv` is attitude as a program without the truth would compute it: {how}.{why} It is normalised, in the same
 axes and conventions as `truth.csv`. **`truth.csv` is exact** and what estimates are to be judged by.
 
 Against the truth the reference is off by {:.3e}° RMS, {:.3e}° at most, {:.3e}° at the end; before normalising, its norm

@@ -13,6 +13,11 @@ pub struct Quality {
     pub from: &'static str,
     /// The method's name.
     pub method: &'static str,
+    /// The samples it reads a second.
+    pub rate_hz: f64,
+    /// Why, where method and rate were chosen for the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<String>,
     /// Angles from the exact truth.
     pub error_deg: Errors,
     /// |q| − 1 of the method's own state at the last row; the rows are of unit norm.
@@ -31,21 +36,41 @@ pub struct Errors {
     pub last: f64,
 }
 
-/// Gives every attitude of the plan's reference before `end` to `row`; nothing without a reference.
+/// The plan's reference with nothing left open, and why it is that, where it was chosen.
+pub(super) fn settled(plan: &Plan, end: SimTime) -> Result<Option<Settled>, DatasetError> {
+    let settle = |reference: Reference| reference.settled(&plan.trajectory, end);
+    let settled = plan.reference.map(settle).transpose().map_err(DatasetError::Tolerance)?;
+    Ok(settled.map(|(reference, choice)| Settled { reference, chosen: choice.map(|it| it.to_string()) }))
+}
+
+/// What is computed.
+pub(super) struct Settled {
+    pub reference: Reference,
+    chosen: Option<String>,
+}
+
+/// Gives every attitude of the reference before `end` to `row`; nothing without a reference.
 pub(super) fn write(
     plan: &Plan,
+    settled: Option<&Settled>,
     end: SimTime,
     mut row: impl FnMut(&Step) -> Result<(), DatasetError>,
 ) -> Result<Option<Quality>, DatasetError> {
-    let Some(reference) = plan.reference else { return Ok(None) };
+    let Some(Settled { reference, chosen }) = settled else { return Ok(None) };
     let mut tally = Tally::default();
-    for step in steps(plan, reference, end) {
+    for step in steps(plan, *reference, end) {
         let step = step.map_err(DatasetError::Reference)?;
         tally.see(&step, step.attitude.angle_to(plan.trajectory.at(step.t).attitude).to_degrees());
         row(&step)?;
     }
-    let (from, method) = (reference.from(), reference.method());
-    Ok(Some(Quality { from, method, error_deg: tally.errors(), norm_error: tally.norm_error }))
+    Ok(Some(Quality {
+        from: reference.from(),
+        method: reference.method(),
+        rate_hz: reference.rate().as_hz(),
+        chosen: chosen.clone(),
+        error_deg: tally.errors(),
+        norm_error: tally.norm_error,
+    }))
 }
 
 type Steps<'a> = Box<dyn Iterator<Item = Result<Step, ReferenceError>> + 'a>;
@@ -53,6 +78,7 @@ type Steps<'a> = Box<dyn Iterator<Item = Result<Step, ReferenceError>> + 'a>;
 fn steps(plan: &Plan, reference: Reference, end: SimTime) -> Steps<'_> {
     match reference {
         Reference::Gyro { method, rate } => Box::new(integrated(&plan.trajectory, rate, end, method)),
+        Reference::Auto { .. } => unreachable!("it has been settled"),
         Reference::AccelMag { rate } => Box::new(from_accel_mag(&plan.trajectory, rate, end)),
     }
 }

@@ -582,6 +582,26 @@ fn a_good_reference_is_the_truth() {
 }
 
 #[test]
+fn a_chosen_reference_says_why_and_its_scene_plays_to_the_same_bytes() {
+    let plan = parsed(&format!("{FAST}method = \"auto\"\ntolerance = \"1e-4 deg\"\n"));
+    let files = written(&plan, plan.duration, player::BLOCK);
+    let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
+    let entry = &manifest["reference"];
+    assert!(entry["error_deg"]["max"].as_f64().unwrap() <= 1e-4, "{entry}");
+    let chosen = entry["chosen"].as_str().unwrap();
+    assert!(chosen.starts_with(entry["method"].as_str().unwrap()) && chosen.contains("cheaper"), "{chosen}");
+    assert!(entry["rate_hz"].as_f64().unwrap() < 100.0, "{entry}");
+    let resolved = String::from_utf8(files["scene.toml"].clone()).unwrap();
+    assert!(!resolved.contains("auto") && !resolved.contains("tolerance"), "{resolved}");
+    let again = parsed(&resolved);
+    assert_eq!(written(&again, again.duration, player::BLOCK)["reference.csv"], files["reference.csv"]);
+    let strict = parsed(&format!("{FAST}method = \"auto\"\ntolerance = \"1e-20 deg\"\n"));
+    let (_home, out) = place();
+    let refused = write_to(&strict, strict.duration, &out, false).unwrap_err().to_string();
+    assert!(refused.contains("no method at any rate up to 1600 Hz stays within"), "{refused}");
+}
+
+#[test]
 fn a_scene_without_a_reference_has_none_and_one_beyond_numbers_says_why() {
     let (_home, out) = place();
     let plain = plan("still", &["duration=1 s"]);

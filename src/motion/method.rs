@@ -10,6 +10,7 @@
 //! [`study`](crate::study). To add one: a file beside these and a line in [`METHODS`].
 
 mod algebra;
+mod choice;
 mod coning_2;
 mod coning_3;
 mod coning_4;
@@ -29,6 +30,7 @@ mod rk4;
 mod rkmk_4;
 
 pub use algebra::{Quaternion, Triple};
+pub use choice::{Choice, Missed, ToleranceError, choose};
 pub use coning_2::Coning2;
 pub use coning_3::Coning3;
 pub use coning_4::Coning4;
@@ -160,6 +162,9 @@ pub struct MethodKind {
     pub input: Input,
     /// What the accuracy study compares it in. It runs in either.
     pub precisions: &'static [Precision],
+    /// Nanoseconds a step takes in double precision, checks included: what [`choose`] compares, written down so
+    /// that its choice is the same on every machine. Measured by `study accuracy` for docs/accuracy.md.
+    pub ns_per_step: u32,
     double: Run<f64>,
     single: Run<f32>,
 }
@@ -171,6 +176,7 @@ impl MethodKind {
         order: u32,
         input: Input,
         precisions: &'static [Precision],
+        ns_per_step: u32,
     ) -> MethodKind {
         assert!(input.count() == N);
         MethodKind {
@@ -179,6 +185,7 @@ impl MethodKind {
             order,
             input,
             precisions,
+            ns_per_step,
             double: run::<M, f64, N>,
             single: run::<M, f32, N>,
         }

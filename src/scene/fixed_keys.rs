@@ -31,7 +31,17 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "from",
         "\"gyro\" (default) or \"accel-mag\": which error-free readings reference.csv is computed from",
     ),
-    ("reference", "method", "how the gyro is stepped: one of `ratetable list methods` (default \"paper\")"),
+    (
+        "reference",
+        "method",
+        "how the gyro is stepped: one of `ratetable list methods` (default \"paper\"), or \"auto\": the cheapest that will do",
+    ),
+    ("reference", "rate", "samples that a method by name reads a second (default: the gyro's rate)"),
+    (
+        "reference",
+        "tolerance",
+        "of method = \"auto\": the largest angle from the truth (default \"0.001 deg\")",
+    ),
     ("output", "to", "PROTOCOL@LINK, such as \"mpu@pty\""),
     (
         "output",

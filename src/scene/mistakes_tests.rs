@@ -349,11 +349,16 @@ const REST: &[Case] = &[
         &[("5:10", "`magnus` is no method (euler, paper, |did you mean `magnus-4`?")],
     ),
     (
-        gyro!("[reference]\nmethod = \"auto\"\ntolerance = \"0.001 deg\"\n"),
-        &[
-            ("5:10", "`auto` is not a method of this version: choose one of euler, paper, "),
-            ("6:13", "`tolerance` goes with method = \"auto\", which this version does not have"),
-        ],
+        gyro!("[reference]\nmethod = \"auto\"\nrate = \"1 Hz\"\ntolerance = \"0 deg\"\n"),
+        &[("6:8", "`auto` chooses the rate, too"), ("7:14", "`0 deg` is not above zero")],
+    ),
+    (
+        gyro!("[reference]\nmethod = \"rk4\"\ntolerance = \"1 deg\"\n"),
+        &[("6:13", "`tolerance`: goes with method = \"auto\": `rk4` errs as it errs")],
+    ),
+    (
+        "duration = \"1 s\"\n[accel]\nrate = \"1 Hz\"\n[mag]\nrate = \"1 Hz\"\n[reference]\nfrom = \"accel-mag\"\nrate = \"2 Hz\"\n",
+        &[("8:8", "goes with from = \"gyro\": accel-mag has no steps")],
     ),
     (gyro!("[reference]\nfrom = \"gyros\"\n"), &[("5:8", "`from` takes gyro or accel-mag, not `gyros`")]),
     (gyro!("[reference]\nfrom = \"accel-mag\"\n"), &[("5:8", "needs both an [accel] and a [mag]")]),

@@ -4,18 +4,26 @@ use super::section::Section;
 use super::suggest;
 use crate::geometry::{Body, Vector};
 use crate::motion::Trajectory;
-use crate::motion::method::{METHODS, MethodKind, ecompass, find};
+use crate::motion::method::{Choice, METHODS, MethodKind, ToleranceError, choose, ecompass, find};
+use crate::quantity::{Kind, Sign};
 use crate::sensor::{SensorKind, SensorPlan};
-use crate::time::Rate;
+use crate::time::{Rate, SimTime};
 
-/// What a reference is computed from, and when: at the ticks of `rate` from t = 0 on.
+/// What a reference is computed from, and when: at the ends of its steps, from t = 0 on.
 #[derive(Clone, Copy, Debug)]
 pub enum Reference {
     /// The true angular rate, step by step.
     Gyro {
         /// How it is stepped.
         method: &'static MethodKind,
-        /// The gyro's.
+        /// The samples it reads a second: the gyro's rate unless the scene gives another.
+        rate: Rate,
+    },
+    /// The same, by the cheapest method and step that stay within a tolerance.
+    Auto {
+        /// The largest angle from the truth, rad.
+        tolerance: f64,
+        /// The gyro's, which its steps are parts or multiples of.
         rate: Rate,
     },
     /// Gravity and the field at each tick, external forces excluded.
@@ -29,16 +37,50 @@ impl Reference {
     /// As in `from = "…"`.
     pub fn from(&self) -> &'static str {
         match self {
-            Reference::Gyro { .. } => FROM[0],
+            Reference::Gyro { .. } | Reference::Auto { .. } => FROM[0],
             Reference::AccelMag { .. } => FROM[1],
         }
     }
 
-    /// The name of what computes it.
+    /// The name of what computes it, [`AUTO`] where that is still to be chosen.
     pub fn method(&self) -> &'static str {
         match self {
             Reference::Gyro { method, .. } => method.name,
+            Reference::Auto { .. } => AUTO,
             Reference::AccelMag { .. } => "triad",
+        }
+    }
+
+    /// How often it reads its sensor.
+    pub fn rate(&self) -> Rate {
+        match *self {
+            Reference::Gyro { rate, .. } | Reference::Auto { rate, .. } | Reference::AccelMag { rate } => {
+                rate
+            }
+        }
+    }
+
+    /// With [`Reference::Auto`] replaced by what it chooses for `trajectory` up to `end`; the choice, if there was one.
+    ///
+    /// # Errors
+    /// Nothing stays within the tolerance.
+    pub fn settled(
+        self,
+        trajectory: &Trajectory,
+        end: SimTime,
+    ) -> Result<(Reference, Option<Choice>), ToleranceError> {
+        let Reference::Auto { tolerance, rate } = self else { return Ok((self, None)) };
+        let choice = choose(trajectory, rate, end, tolerance.to_degrees())?;
+        Ok((Reference::Gyro { method: choice.method, rate: choice.rate }, Some(choice)))
+    }
+
+    /// As it is written in a scene that leaves nothing open.
+    pub(super) fn write(&self, table: &mut toml::Table) {
+        table.insert("from".into(), self.from().into());
+        if let Reference::Gyro { method, rate } = self {
+            table.insert("method".into(), method.name.into());
+            table.insert("rate".into(), rate.to_string().into());
+            table.remove("tolerance");
         }
     }
 }
@@ -46,6 +88,10 @@ impl Reference {
 const FROM: [&str; 2] = ["gyro", "accel-mag"];
 /// The paper's own.
 const DEFAULT: &str = "paper";
+/// The method that is chosen for the scene.
+pub const AUTO: &str = "auto";
+/// Of [`AUTO`], unless the scene gives another.
+const TOLERANCE: &str = "0.001 deg";
 
 /// The reference that the scene asks for, and its table as resolved; `sensors` is `None` where they could not all be
 /// read, so that nothing is blamed on that.
@@ -59,53 +105,74 @@ pub(super) fn reference(
     }
     let section = top.table("reference");
     let from = section.word("from", &FROM, FROM[0]);
-    let default = (from == FROM[0]).then_some(DEFAULT);
-    let method = section.text("method", default).and_then(|name| method(&section, &name));
-    if section.has("tolerance") {
-        section.mistake(
-            "tolerance",
-            "`tolerance` goes with method = \"auto\", which this version does not have",
-        );
-    }
-    let reference = match sensors {
-        Some(sensors) if from == FROM[0] => of_gyro(&section, sensors, method),
-        Some(sensors) => of_accel_mag(&section, sensors, trajectory),
-        None => None,
+    let reference = if from == FROM[0] {
+        let stepping = stepping(&section);
+        sensors.and_then(|sensors| of_gyro(&section, sensors, stepping?))
+    } else {
+        // A method left over from the gyro does no harm: there are no steps here.
+        section.has("method");
+        for key in ["rate", "tolerance"] {
+            if section.has(key) {
+                section.mistake(key, "goes with from = \"gyro\": accel-mag has no steps");
+            }
+        }
+        sensors.and_then(|sensors| of_accel_mag(&section, sensors, trajectory))
     };
-    let resolved = section.finish();
-    reference.map(|reference| (reference, resolved))
+    let mut resolved = section.finish();
+    reference.map(|reference| {
+        reference.write(&mut resolved);
+        (reference, resolved)
+    })
 }
 
-fn method(section: &Section<'_>, name: &str) -> Option<&'static MethodKind> {
-    let found = find(name);
-    if found.is_none() {
-        let names = METHODS.map(|method| method.name);
-        let why = match name {
-            "auto" => format!("`auto` is not a method of this version: choose one of {}", names.join(", ")),
-            _ => {
-                let near = suggest::did_you_mean(name, names);
-                format!("`{name}` is no method ({}){near}", names.join(", "))
-            }
-        };
-        section.mistake("method", why);
+/// What the scene says of the steps.
+enum Stepping {
+    /// A method, at the gyro's rate or at one of its own.
+    Named(&'static MethodKind, Option<Rate>),
+    /// Within so many radians.
+    Within(f64),
+}
+
+fn stepping(section: &Section<'_>) -> Option<Stepping> {
+    let name = section.text("method", Some(DEFAULT))?;
+    if name == AUTO {
+        if section.has("rate") {
+            section.mistake("rate", "goes with a method by name: `auto` chooses the rate, too");
+        }
+        return section
+            .scalar("tolerance", Kind::ANGLE.signed(Sign::Positive), Some(TOLERANCE))
+            .map(Stepping::Within);
     }
-    found
+    if section.has("tolerance") {
+        section.mistake("tolerance", format!("goes with method = \"{AUTO}\": `{name}` errs as it errs"));
+    }
+    let rate = section.has("rate").then(|| section.rate("rate"));
+    let method = find(&name);
+    if method.is_none() {
+        let names: Vec<_> = METHODS.iter().map(|method| method.name).chain([AUTO]).collect();
+        let near = suggest::did_you_mean(&name, names.iter().copied());
+        section.mistake("method", format!("`{name}` is no method ({}){near}", names.join(", ")));
+    }
+    match rate {
+        // What is wrong with it has been said.
+        Some(None) => None,
+        rate => Some(Stepping::Named(method?, rate.flatten())),
+    }
 }
 
 fn rate(sensors: &[SensorPlan], kind: SensorKind) -> Option<Rate> {
     sensors.iter().find(|sensor| sensor.kind == kind).map(|sensor| sensor.rate)
 }
 
-fn of_gyro(
-    section: &Section<'_>,
-    sensors: &[SensorPlan],
-    method: Option<&'static MethodKind>,
-) -> Option<Reference> {
-    let rate = rate(sensors, SensorKind::Gyro);
-    if rate.is_none() {
+fn of_gyro(section: &Section<'_>, sensors: &[SensorPlan], stepping: Stepping) -> Option<Reference> {
+    let gyro = rate(sensors, SensorKind::Gyro);
+    if gyro.is_none() {
         section.mistake("from", "a reference from the gyro needs a [gyro] with its rate");
     }
-    Some(Reference::Gyro { method: method?, rate: rate? })
+    Some(match stepping {
+        Stepping::Named(method, own) => Reference::Gyro { method, rate: own.or(gyro)? },
+        Stepping::Within(tolerance) => Reference::Auto { tolerance, rate: gyro? },
+    })
 }
 
 fn of_accel_mag(section: &Section<'_>, sensors: &[SensorPlan], trajectory: &Trajectory) -> Option<Reference> {

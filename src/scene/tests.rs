@@ -512,7 +512,17 @@ fn a_reference_is_what_the_scene_asks_for_and_is_written_down() {
     assert_eq!(named(&plan(SHORT)), None);
     let short = format!("{SHORT}[reference]\n");
     assert_eq!(named(&plan(&short)), Some(("gyro", "paper")));
-    assert!(plan(&short).resolved.contains("[reference]\nfrom = \"gyro\"\nmethod = \"paper\""));
+    assert!(plan(&short).resolved.contains("[reference]\nfrom = \"gyro\"\nmethod = \"paper\"\nrate = "));
+    let auto = set(&short, &["reference.method=auto"]).unwrap();
+    assert_eq!(named(&auto), Some(("gyro", "auto")));
+    assert!(auto.resolved.contains("tolerance = \"0.001 deg\""), "{}", auto.resolved);
+    let (settled, choice) = auto.reference.unwrap().settled(&auto.trajectory, auto.duration).unwrap();
+    let written = plan(&auto.resolved_until(auto.duration, Some(&settled)));
+    assert_eq!(
+        (named(&written), choice.map(|it| it.method.name)),
+        (Some(("gyro", settled.method())), Some(settled.method()))
+    );
+    assert_eq!(written.reference.map(|it| it.rate()), Some(settled.rate()));
     let method = set(&short, &["reference.method=magnus-4"]).unwrap();
     assert_eq!(named(&method), Some(("gyro", "magnus-4")));
     assert_eq!(named(&plan(&method.resolved)), Some(("gyro", "magnus-4")));

@@ -8,6 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Increment1, 1>(
     2,
     Input::Increments(1),
     DOUBLE,
+    22,
 );
 
 /// `q ← q ⊗ exp(a)`, a the integral of the rate over the step.

@@ -13,6 +13,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<PolynomialFit, N>(
     10,
     Input::Increments(N),
     DOUBLE,
+    463,
 );
 
 /// Fits the polynomial of degree 7 whose integrals are the eight increments, and solves `Q̇ = ½·Q⊗w` for it:
