@@ -135,6 +135,10 @@ impl Motion for Circle {
         let rolling = if self.entry > 0.0 { self.bank / self.entry } else { 0.0 };
         turning.abs().max(rolling.abs())
     }
+
+    fn speed(&self) -> f64 {
+        self.speed
+    }
 }
 
 #[cfg(test)]

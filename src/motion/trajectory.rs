@@ -2,7 +2,7 @@
 
 use super::{Kinematics, Motion, rest};
 use crate::double::Double;
-use crate::geometry::{Attitude, Body, Nav, Vector};
+use crate::geometry::{Attitude, Body, Nav, Rotation, Vector};
 use crate::time::SimTime;
 
 /// What is true at one instant.
@@ -94,6 +94,35 @@ impl Trajectory {
         self.field
     }
 
+    /// The times within the scene's motions at which a segment or a force begins or ends, in no order.
+    pub fn edges(&self) -> impl Iterator<Item = SimTime> + '_ {
+        let segments = self.segments.iter().map(|segment| segment.start);
+        segments.chain(self.forces.iter().flat_map(|force| [force.start, force.end]))
+    }
+
+    /// Attitude, angular rate and the path's acceleration at `t`, without gravity and external forces.
+    pub fn kinematics(&self, t: SimTime) -> Kinematics {
+        let segment = self.segment(t);
+        segment.motion.at(segment.attitude, (t - segment.start).exact_seconds())
+    }
+
+    /// The external forces, in the order written.
+    pub fn forces(&self) -> &[Force] {
+        &self.forces
+    }
+
+    /// The sum of the external forces' accelerations at `t`, m/s².
+    pub fn external(&self, t: SimTime) -> Vector<Body> {
+        let to_body = self.kinematics(t).attitude.inverse();
+        self.pushes(t, to_body).fold(Vector::ZERO, |sum, push| sum + push)
+    }
+
+    /// The greatest speed over the ground in `[0, end)`, m/s.
+    pub fn speed(&self, end: SimTime) -> f64 {
+        let flown = self.segments.iter().filter(|segment| segment.start < end);
+        flown.map(|segment| segment.motion.speed()).fold(0.0, f64::max)
+    }
+
     /// The truth at `t` (at or after 0).
     pub fn at(&self, t: SimTime) -> Truth {
         let segment = self.segment(t);
@@ -110,13 +139,16 @@ impl Trajectory {
         let Kinematics { attitude, rate, acceleration } = segment.motion.at(segment.attitude, since);
         let to_body = attitude.inverse();
         let mut force = to_body.apply(acceleration - self.gravity);
-        for active in self.forces.iter().filter(|force| force.start <= t && t < force.end) {
-            force += match active.push {
-                Push::Body(push) => push,
-                Push::Nav(push) => to_body.apply(push),
-            };
-        }
+        self.pushes(t, to_body).for_each(|push| force += push);
         Truth { t, attitude, rate, force, field: to_body.apply(self.field) }
+    }
+
+    fn pushes(&self, t: SimTime, to_body: Rotation<Nav, Body>) -> impl Iterator<Item = Vector<Body>> {
+        let active = self.forces.iter().filter(move |force| force.start <= t && t < force.end);
+        active.map(move |force| match force.push {
+            Push::Body(push) => push,
+            Push::Nav(push) => to_body.apply(push),
+        })
     }
 
     /// The means of rate, force and field over `[from, to)`, as an integrating sensor sees them; the attitude is

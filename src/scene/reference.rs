@@ -34,6 +34,13 @@ impl Reference {
         }
     }
 
+    /// At whose ticks.
+    pub fn rate(&self) -> Rate {
+        match self {
+            Reference::Gyro { rate, .. } | Reference::AccelMag { rate } => *rate,
+        }
+    }
+
     /// The name of what computes it.
     pub fn method(&self) -> &'static str {
         match self {
