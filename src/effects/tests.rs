@@ -212,6 +212,9 @@ fn a_coordinated_turn_has_its_path_acceleration_and_what_the_earth_does_to_its_s
     assert_eq!(found(&turn, "gravity_with_height").size, 0.0, "it is level");
 
     let gyro = plan(&TURN.replace("accel", "gyro"), &[]);
+    // Rolling in ends with a jump of the roll rate, 25 deg in 2 s; apart from that nothing turns fast.
+    let roll = found(&gyro, "averaging_over_seams").size.to_degrees();
+    assert!((roll - 12.5).abs() < 0.01 && found(&gyro, "averaging").size.to_degrees() < 0.01, "{roll}");
     assert!((found(&gyro, "transport_rate").size - 300.0 / 6_335_439.0).abs() < 1e-15);
     // 6 km of a field of 50 µT that falls by 3/R a metre.
     let mag = plan(&TURN.replace("accel", "mag"), &[]);
