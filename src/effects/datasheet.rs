@@ -7,6 +7,8 @@ use crate::sensor::parts;
 /// The sensor as the datasheet of its part has it, each value that is drawn at the far end of its tolerance.
 pub(super) struct Sheet {
     plan: Plan,
+    /// Keys of which the sheet gives a spread.
+    spread: Vec<String>,
     terms: Vec<&'static str>,
 }
 
@@ -15,11 +17,12 @@ impl Sheet {
     pub fn of(survey: &Survey<'_>) -> Option<Sheet> {
         let sensor = survey.sensor;
         let part = parts::find(sensor.part?, sensor.kind)?;
-        let mut table = toml::Table::new();
+        let (mut table, mut spread) = (toml::Table::new(), Vec::new());
         for value in scene::parts::sources(part).ok()?.into_iter().filter(|value| value.sensor == sensor.kind)
         {
             // `uniform LOW to HIGH`, `normal MEAN to STD`
             if let Some((_, end)) = value.value.rsplit_once(" to ") {
+                spread.push(format!("{}.{}", sensor.kind, value.key));
                 table.insert(value.key, end.into());
             }
         }
@@ -30,7 +33,7 @@ impl Sheet {
         scene.insert(sensor.kind.name().into(), table.into());
         let plan = Plan::parse(&scene.to_string(), part.file, part.names[0], &[]).ok()?;
         let terms = plan.build(plan.sensors.first()?).terms().to_vec();
-        Some(Sheet { plan, terms })
+        Some(Sheet { plan, spread, terms })
     }
 
     /// An error term that the part has and the scene's sensor has not.
@@ -41,6 +44,8 @@ impl Sheet {
         let sensor = self.plan.sensors.first()?;
         let found = (kind.find)(&survey.met_by(sensor))?;
         let note = format!("the datasheet of the {} gives it", sensor.part.unwrap_or_default());
-        Some(Found { modelled: false, ..found }.noting(note))
+        let is_bound = found.key.as_ref().is_some_and(|key| self.spread.contains(key));
+        let statistic = if is_bound { "at most" } else { found.statistic };
+        Some(Found { modelled: false, statistic, ..found }.noting(note))
     }
 }

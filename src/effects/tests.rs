@@ -313,6 +313,7 @@ fn what_a_datasheet_gives_and_the_scene_leaves_out_is_named() {
     let bias = found(&plan(GYRO, &part), "bias");
     assert!((bias.size.to_degrees() - 5.0).abs() < 1e-12, "the end of the tolerance of ±5 deg/s: {bias:?}");
     assert_eq!((bias.verdict, bias.key.as_deref()), (Verdict::Missing, Some("gyro.bias")));
+    assert_eq!(bias.statistic, "at most");
     assert!(bias.note.is_some_and(|note| note.contains("MPU-9250")));
 
     let quiet = found(&plan(GYRO, &[part[0], "gyro.noise_std=0 deg/s"]), "white_noise");
