@@ -22,6 +22,7 @@ pub mod clock;
 pub mod dataset;
 pub mod double;
 pub mod earth;
+pub mod effects;
 pub mod geometry;
 pub mod keys;
 pub mod link;

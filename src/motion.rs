@@ -36,6 +36,16 @@ pub trait Motion: Debug + Send + Sync {
 
     /// A bound on how fast anything in it changes, rad/s: sets the panels of a mean over an interval.
     fn fastest(&self) -> f64;
+
+    /// The times since its start, between start and end, at which its angular rate or acceleration may jump.
+    fn seams(&self) -> Vec<SimTime> {
+        Vec::new()
+    }
+
+    /// The speed over the ground, m/s: 0 for a vehicle that turns where it stands.
+    fn speed(&self) -> f64 {
+        0.0
+    }
 }
 
 /// Attitude and what moves it.

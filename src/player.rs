@@ -135,8 +135,8 @@ impl Channel {
     }
 }
 
-/// What an error-free sensor of this kind reads.
-fn sensed(kind: SensorKind, truth: &Truth) -> Vector<Body> {
+/// What an error-free sensor of this kind reads, in its unit.
+pub fn sensed(kind: SensorKind, truth: &Truth) -> Vector<Body> {
     match kind {
         SensorKind::Gyro => truth.rate,
         SensorKind::Accel => truth.force,

@@ -28,7 +28,7 @@ pub use output::{Destination, Output};
 pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
 
-use crate::earth::Day;
+use crate::earth::{self, Day};
 use crate::geometry::Axes;
 use crate::motion::Trajectory;
 use crate::quantity::Sign;
@@ -51,6 +51,8 @@ pub struct Plan {
     pub duration: SimTime,
     /// How it is written, and the datasets made from it.
     pub axes: Axes,
+    /// Where on Earth it is, if it says so.
+    pub site: Option<earth::Place>,
     /// The scene's date, if it has one.
     pub day: Option<Day>,
     /// Limits of the report, such as `sensors.gyro.late_us.p99<200`, each with its place.
@@ -187,6 +189,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         seed,
         duration: duration.unwrap_or_default(),
         axes,
+        site: earth.place,
         day: earth.day,
         limits,
         trajectory,

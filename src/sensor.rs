@@ -14,7 +14,9 @@ mod resolution;
 pub mod white_noise;
 
 pub use bias::settle as settle_bias;
+pub use bias_walk::step as bias_step;
 pub use mount::Mount;
+pub use range::limits;
 pub use resolution::lsb;
 
 use crate::geometry::{Body, Vector};
@@ -299,8 +301,16 @@ impl Sensor {
     /// # Errors
     /// The key whose value cannot be, and what would be right.
     pub fn new(plan: &SensorPlan, seed: u64) -> Result<Sensor, KeyError> {
+        Sensor::without(plan, seed, &[])
+    }
+
+    /// Compiles a plan but for the terms called so; every other draws the numbers that it draws beside them.
+    ///
+    /// # Errors
+    /// As [`Sensor::new`].
+    pub fn without(plan: &SensorPlan, seed: u64, left_out: &[&str]) -> Result<Sensor, KeyError> {
         let mut sensor = Sensor { biases: Vec::new(), readings: Vec::new(), names: Vec::new() };
-        for kind in TERMS {
+        for kind in TERMS.into_iter().filter(|kind| !left_out.contains(&kind.name)) {
             if let Some(term) = (kind.build)(&plan.values, &plan.context(seed))? {
                 sensor.names.push(kind.name);
                 match kind.stage {

@@ -31,6 +31,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     // An output names its protocol and its link, whose spellings and parameters are theirs.
     ("scene", &["earth", "motion", "sensor", "schedule", "wire", "link"]),
     ("player", &["scene", "motion", "sensor", "schedule"]),
+    // The sizes of effects follow from the plan: its motion, place, sensors and their parts. The player's error-free
+    // reading is what they are sizes beside, and a report's short numbers stand in their notes.
+    ("effects", &["scene", "player", "motion", "sensor", "earth", "report"]),
     ("clock", &["os"]),
     // A config packet is in scene time and SYSTEM_TIME carries the scene's date; the load is counted over ticks.
     ("wire", &["sensor", "earth", "schedule"]),
@@ -50,8 +53,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "scene", "session", "listen", "dataset", "score", "study", "report", "motion", "sensor", "wire",
-            "link", "player", "os", "clock", "earth",
+            "scene", "effects", "session", "listen", "dataset", "score", "study", "report", "motion",
+            "sensor", "wire", "link", "player", "os", "clock", "earth",
         ],
     ),
 ];

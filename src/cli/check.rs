@@ -1,11 +1,14 @@
 //! `ratetable check`: the plan of a scene, before anything runs.
 
+mod effects;
+mod json;
+mod text;
+
 use super::{Refusal, Verdict, options, say};
-use crate::report::{number, table};
-use crate::scene::{Output, Plan};
+use crate::report::number;
+use crate::scene::{Output, Plan, Reference};
 use crate::sensor::{SensorKind, SensorPlan, lsb, white_noise};
 use crate::wire::{self, Setup};
-use serde_json::{Value, json};
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -22,10 +25,13 @@ pub struct Arguments {
 pub fn check(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
     options::limits(&[], &plan)?;
+    let settle = |reference: Reference| reference.settled(&plan.trajectory, plan.duration);
+    let reference = plan.reference.map(settle).transpose();
+    let reference = reference.map_err(|why| Refusal(format!("[reference]: {why}")))?;
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&json(&plan))? + "\n"));
+        say(&(serde_json::to_string_pretty(&json::json(&plan, reference.as_ref()))? + "\n"));
     } else {
-        say(&text(&plan));
+        say(&text::text(&plan, reference.as_ref()));
     }
     Ok(Verdict::Fine)
 }
@@ -96,102 +102,4 @@ fn warnings(plan: &Plan) -> Vec<String> {
         }
     }
     warnings
-}
-
-fn text(plan: &Plan) -> String {
-    let mut text = format!(
-        "{}: {}, seed {}, {} axes\ngravity {} m/s², field {} µT, declination {} deg\n\n",
-        plan.name,
-        plan.duration,
-        plan.seed,
-        plan.axes,
-        number(plan.trajectory.gravity().length()),
-        number(plan.trajectory.field().length()),
-        number(crate::earth::declination(plan.trajectory.field()).to_degrees()),
-    );
-    let rows = plan.sensors.iter().map(|sensor| {
-        let (unit, walk_unit, scale) = shown(sensor.kind);
-        let amount = |value: f64, unit: &str| format!("{} {unit}", number(value * scale));
-        let noise = noise(sensor);
-        let say = |pick: fn(&Noise) -> f64, unit: &str| {
-            noise.as_ref().map_or("-".into(), |noise| amount(pick(noise), unit))
-        };
-        vec![
-            sensor.kind.to_string(),
-            sensor.rate.to_string(),
-            sensor.part.unwrap_or("-").to_string(),
-            say(|noise| noise.per_sample, unit),
-            say(|noise| noise.density, &format!("{unit}/√Hz")),
-            say(|noise| noise.random_walk, walk_unit),
-            lsb(&sensor.values, sensor.kind).map_or("-".into(), |lsb| amount(lsb, unit)),
-            terms(plan, sensor).join(" "),
-        ]
-    });
-    let heading = [
-        "sensor",
-        "rate",
-        "part",
-        "noise/sample",
-        "one-sided density",
-        "random walk",
-        "count",
-        "terms evaluated",
-    ];
-    text += &table(&heading, &rows.collect::<Vec<_>>());
-    text += "\nOne-sided density (datasheets) = √2 · random walk (Allan deviation at 1 s; Kalibr's noise density).\n";
-    if !plan.outputs.is_empty() {
-        let rows = plan.outputs.iter().map(|output| {
-            let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
-            let share = output
-                .to
-                .address
-                .baud()
-                .map_or("-".into(), |baud| format!("{:.0} %", 1000.0 * bytes / f64::from(baud)));
-            vec![output.to.to_string(), number(packets), number(bytes), share]
-        });
-        text += &format!(
-            "\n{}",
-            table(&["output", "packets/s", "bytes/s", "of baud rate"], &rows.collect::<Vec<_>>())
-        );
-    }
-    for drawn in &plan.drawn {
-        text += &format!("drawn: {} = {}\n", drawn.key, drawn.value);
-    }
-    for warning in warnings(plan) {
-        text += &format!("warning: {warning}\n");
-    }
-    text
-}
-
-fn json(plan: &Plan) -> Value {
-    let sensors = plan.sensors.iter().map(|sensor| {
-        let noise = noise(sensor);
-        json!({
-            "name": sensor.kind.name(),
-            "rate_hz": sensor.rate.as_hz(),
-            "part": sensor.part,
-            "unit": sensor.kind.unit(),
-            "noise_std": noise.as_ref().map_or(0.0, |noise| noise.per_sample),
-            "noise_density": noise.as_ref().map_or(0.0, |noise| noise.density),
-            "random_walk": noise.as_ref().map_or(0.0, |noise| noise.random_walk),
-            "resolution": lsb(&sensor.values, sensor.kind),
-            "terms": terms(plan, sensor),
-        })
-    });
-    let links = plan.outputs.iter().map(|output| {
-        let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
-        let capacity = output.to.address.baud().map(|baud| f64::from(baud) / 10.0);
-        json!({ "to": output.to.to_string(), "packets_per_s": packets, "bytes_per_s": bytes, "capacity_bytes_per_s": capacity })
-    });
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "scene": plan.name,
-        "seed": plan.seed,
-        "duration_s": plan.duration.seconds(),
-        "axes": plan.axes.to_string(),
-        "sensors": sensors.collect::<Vec<_>>(),
-        "links": links.collect::<Vec<_>>(),
-        "drawn": plan.drawn,
-        "warnings": warnings(plan),
-    })
 }

@@ -7,20 +7,19 @@ use super::progress::Bar;
 use super::{Refusal, Verdict, say};
 use crate::dataset;
 use crate::motion::Trajectory;
-use crate::scene::Plan;
+use crate::scene::{Plan, builtin, nearest};
 use crate::study::motions::{self, Case, OfTrajectory};
 use crate::study::stability::Effort;
 use crate::study::{accuracy, all_cores, stability};
 use clap::ValueEnum;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Which study
-    #[arg(default_value = "all")]
-    what: What,
+    /// accuracy, stability or all, which is the default; or the scene at once
+    study: Option<String>,
     /// A TOML file or the name of a built-in scene: its motion joins the built-in ones
     scene: Option<String>,
     /// Write the numbers as CSV and the charts as SVG into this folder
@@ -59,12 +58,13 @@ struct Results {
 }
 
 pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
-    let plan = arguments.scene.as_ref().map(|scene| Plan::load(scene, &[])).transpose()?;
+    let (what, scene) = asked(arguments)?;
+    let plan = scene.map(|scene| Plan::load(scene, &[])).transpose()?;
     if let Some(dir) = &arguments.out {
         dataset::may_write(dir, arguments.force)?;
     }
     let cases = cases(plan.as_ref(), arguments.quick)?;
-    let results = run(arguments, &cases);
+    let results = run(what, arguments.quick, &cases);
     if let Some(dir) = &arguments.out {
         dataset::put_all(dir, arguments.force, &files(&results, &cases)?)?;
         eprintln!("{}: written", dir.display());
@@ -100,12 +100,39 @@ fn cases(plan: Option<&Plan>, quick: bool) -> Result<Vec<Case<'_>>, Refusal> {
     Ok(cases)
 }
 
-fn run(arguments: &Arguments, cases: &[Case]) -> Results {
-    let wanted = |what| arguments.what == What::All || arguments.what == what;
+/// Which study, and of which scene: the first word is a study's name, or else the scene of all studies.
+fn asked(arguments: &Arguments) -> Result<(What, Option<&str>), Refusal> {
+    let (first, second) = (arguments.study.as_deref(), arguments.scene.as_deref());
+    let Some(word) = first else { return Ok((What::All, None)) };
+    if let Ok(what) = What::from_str(word, false) {
+        return Ok((what, second));
+    }
+    let studies: Vec<_> = What::value_variants().iter().filter_map(What::to_possible_value).collect();
+    let studies = || studies.iter().map(|study| study.get_name());
+    let is_scene = builtin::text(word).is_some() || Path::new(word).exists();
+    if is_scene && second.is_none() {
+        return Ok((What::All, Some(word)));
+    }
+    let names = studies().collect::<Vec<_>>().join(", ");
+    let near = nearest(word, studies().chain(builtin::SCENES.map(|(name, _)| name)));
+    let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    Err(Refusal(match second {
+        None => format!("`{word}` is neither a study ({names}) nor a scene, built in or a file{near}"),
+        Some(scene) if is_scene => {
+            format!(
+                "`{word}` is a scene, and so `{scene}` is one too many: write a study ({names}), then one scene"
+            )
+        }
+        Some(_) => format!("`{word}` is no study ({names}){near}"),
+    }))
+}
+
+fn run(what: What, quick: bool, cases: &[Case]) -> Results {
+    let wanted = |study| what == What::All || what == study;
     let threads = all_cores();
     Results {
         version: env!("CARGO_PKG_VERSION"),
-        quick: arguments.quick,
+        quick,
         accuracy: wanted(What::Accuracy).then(|| {
             let bar = Bar::of_jobs("accuracy");
             let start = Instant::now();
@@ -115,7 +142,7 @@ fn run(arguments: &Arguments, cases: &[Case]) -> Results {
         }),
         stability: wanted(What::Stability).then(|| {
             let bar = Bar::of_jobs("stability");
-            let effort = if arguments.quick { Effort::QUICK } else { Effort::FULL };
+            let effort = if quick { Effort::QUICK } else { Effort::FULL };
             let rows = stability::run(effort, threads, &|done, all| bar.jobs(done, all));
             bar.clear();
             rows

@@ -9,6 +9,7 @@ use crate::double::Double;
 use crate::geometry::{Attitude, Euler, Nav, Vector, exp};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign, text_scalar};
+use crate::time::{NANOS, SimTime};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -135,13 +136,21 @@ impl Motion for Circle {
         let rolling = if self.entry > 0.0 { self.bank / self.entry } else { 0.0 };
         turning.abs().max(rolling.abs())
     }
+
+    fn seams(&self) -> Vec<SimTime> {
+        let at = |seconds: f64| SimTime(libm::round(seconds * NANOS as f64) as i64);
+        if self.entry > 0.0 { vec![at(self.entry), at(self.duration - self.entry)] } else { Vec::new() }
+    }
+
+    fn speed(&self) -> f64 {
+        self.speed
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::tests::rate_is_the_derivative_of_attitude;
     use super::*;
-    use crate::time::{NANOS, SimTime};
 
     fn circle(bank_deg: f64, entry: f64) -> Circle {
         Circle { bank: bank_deg.to_radians(), speed: 15.0, entry, duration: 20.0, gravity: 9.80665 }

@@ -2,7 +2,7 @@
 
 use super::{Kinematics, Motion, rest};
 use crate::double::Double;
-use crate::geometry::{Attitude, Body, Nav, Vector};
+use crate::geometry::{Attitude, Body, Nav, Rotation, Vector};
 use crate::time::SimTime;
 
 /// What is true at one instant.
@@ -46,6 +46,8 @@ struct Segment {
     end: SimTime,
     attitude: Attitude,
     motion: Box<dyn Motion>,
+    /// Within it, where the motion may jump.
+    seams: Vec<SimTime>,
 }
 
 /// Attitude, rate, force and field at any time.
@@ -72,10 +74,11 @@ impl Trajectory {
         for (duration, motion) in motions.into_iter().filter(|(duration, _)| *duration > SimTime::ZERO) {
             let (start, attitude) = next;
             next = (start + duration, motion.at(attitude, duration.exact_seconds()).attitude);
-            segments.push(Segment { start, end: next.0, attitude, motion });
+            let seams = motion.seams().into_iter().map(|seam| start + seam).collect();
+            segments.push(Segment { start, end: next.0, attitude, motion, seams });
         }
         let (start, attitude) = next;
-        segments.push(Segment { start, end: SimTime::FOREVER, attitude, motion: rest() });
+        segments.push(Segment { start, end: SimTime::FOREVER, attitude, motion: rest(), seams: vec![] });
         Trajectory { segments, forces, gravity, field }
     }
 
@@ -94,6 +97,36 @@ impl Trajectory {
         self.field
     }
 
+    /// The times at which something may jump, as a segment or a force that begins or ends, in no order.
+    pub fn edges(&self) -> impl Iterator<Item = SimTime> + '_ {
+        let starts = self.segments.iter().map(|segment| segment.start);
+        let within = self.segments.iter().flat_map(|segment| segment.seams.iter().copied());
+        starts.chain(within).chain(self.forces.iter().flat_map(|force| [force.start, force.end]))
+    }
+
+    /// Attitude, angular rate and the path's acceleration at `t`, without gravity and external forces.
+    pub fn kinematics(&self, t: SimTime) -> Kinematics {
+        let segment = self.segment(t);
+        segment.motion.at(segment.attitude, (t - segment.start).exact_seconds())
+    }
+
+    /// The external forces, in the order written.
+    pub fn forces(&self) -> &[Force] {
+        &self.forces
+    }
+
+    /// The sum of the external forces' accelerations at `t`, m/s².
+    pub fn external(&self, t: SimTime) -> Vector<Body> {
+        let to_body = self.kinematics(t).attitude.inverse();
+        self.pushes(t, to_body).fold(Vector::ZERO, |sum, push| sum + push)
+    }
+
+    /// The greatest speed over the ground in `[0, end)`, m/s.
+    pub fn speed(&self, end: SimTime) -> f64 {
+        let flown = self.segments.iter().filter(|segment| segment.start < end);
+        flown.map(|segment| segment.motion.speed()).fold(0.0, f64::max)
+    }
+
     /// The truth at `t` (at or after 0).
     pub fn at(&self, t: SimTime) -> Truth {
         let segment = self.segment(t);
@@ -110,13 +143,16 @@ impl Trajectory {
         let Kinematics { attitude, rate, acceleration } = segment.motion.at(segment.attitude, since);
         let to_body = attitude.inverse();
         let mut force = to_body.apply(acceleration - self.gravity);
-        for active in self.forces.iter().filter(|force| force.start <= t && t < force.end) {
-            force += match active.push {
-                Push::Body(push) => push,
-                Push::Nav(push) => to_body.apply(push),
-            };
-        }
+        self.pushes(t, to_body).for_each(|push| force += push);
         Truth { t, attitude, rate, force, field: to_body.apply(self.field) }
+    }
+
+    fn pushes(&self, t: SimTime, to_body: Rotation<Nav, Body>) -> impl Iterator<Item = Vector<Body>> {
+        let active = self.forces.iter().filter(move |force| force.start <= t && t < force.end);
+        active.map(move |force| match force.push {
+            Push::Body(push) => push,
+            Push::Nav(push) => to_body.apply(push),
+        })
     }
 
     /// The means of rate, force and field over `[from, to)`, as an integrating sensor sees them; the attitude is
@@ -150,9 +186,10 @@ impl Trajectory {
         Truth { rate, force, field, ..end }
     }
 
-    /// The first time after `t` at which the segment or a force begins or ends.
+    /// The first time after `t` at which the segment ends or jumps, or a force begins or ends.
     fn next_edge(&self, segment: &Segment, t: SimTime) -> SimTime {
-        let edges = self.forces.iter().flat_map(|force| [force.start, force.end]).filter(|&edge| edge > t);
+        let forces = self.forces.iter().flat_map(|force| [force.start, force.end]);
+        let edges = forces.chain(segment.seams.iter().copied()).filter(|&edge| edge > t);
         edges.fold(segment.end, SimTime::min)
     }
 
@@ -246,6 +283,31 @@ mod tests {
         }
         assert!((mean.force - force).length() < 1e-8, "{:?} against {force:?}", mean.force);
         assert!((mean.rate - rate).length() < 1e-9, "{:?} against {rate:?}", mean.rate);
+    }
+
+    /// The roll rate of a turn jumps where the roll ends: 1 ms of it in a mean over 4 ms is a quarter.
+    #[test]
+    fn a_mean_over_a_jump_within_a_motion_is_exact() {
+        #[derive(Debug)]
+        struct Jumps;
+        impl Motion for Jumps {
+            fn at(&self, start: Attitude, t: Double) -> Kinematics {
+                let rate = if t.to_f64() < 0.5 { Vector::new(2.0, 0.0, 0.0) } else { Vector::ZERO };
+                Kinematics { attitude: start, rate, acceleration: Vector::ZERO }
+            }
+            fn fastest(&self) -> f64 {
+                2.0
+            }
+            fn seams(&self) -> Vec<SimTime> {
+                vec![SimTime(NANOS / 2)]
+            }
+        }
+        let motions: Vec<(SimTime, Box<dyn Motion>)> =
+            vec![(SimTime(NANOS), rest()), (SimTime(NANOS), Box::new(Jumps))];
+        let path = Trajectory::new(Attitude::IDENTITY, motions, vec![], gravity(), Vector::ZERO);
+        let mean = path.mean(SimTime(1_499_000_000), SimTime(1_503_000_000));
+        assert!((mean.rate.v.x - 0.5).abs() < 1e-15, "{}", mean.rate.v.x);
+        assert!(path.edges().any(|edge| edge == SimTime(1_500_000_000)));
     }
 
     #[test]

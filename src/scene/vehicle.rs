@@ -31,6 +31,7 @@ pub(super) fn start(top: &Section<'_>) -> Start {
 pub(super) struct Earth {
     pub gravity: Vector<Nav>,
     pub field: Vector<Nav>,
+    pub place: Option<earth::Place>,
     pub day: Option<Day>,
     pub resolved: toml::Table,
 }
@@ -61,7 +62,7 @@ pub(super) fn earth(top: &Section<'_>) -> Earth {
         section.resolve("field", quantity::text_vector(axes.nav_out(field).to_array(), "uT"));
         field
     };
-    Earth { gravity, field, day, resolved: section.finish() }
+    Earth { gravity, field, place, day, resolved: section.finish() }
 }
 
 /// One number pulls straight down; a vector is the acceleration of free fall in nav axes.

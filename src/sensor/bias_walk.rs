@@ -39,8 +39,8 @@ pub(super) static KIND: TermKind = TermKind {
     },
 };
 
-/// The σ of one step; the two independent walks add in variance.
-fn step(values: &Values, context: &Context) -> DVec3 {
+/// The σ of one step, per axis, in the reading's unit; the two independent walks add in variance.
+pub fn step(values: &Values, context: &Context) -> DVec3 {
     let per_sample = values.vector("bias_step_std").unwrap_or_default();
     let per_root_second =
         values.vector("bias_random_walk").unwrap_or_default() * libm::sqrt(context.rate.period());

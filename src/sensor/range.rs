@@ -2,8 +2,8 @@
 
 use super::mount::Mount;
 use super::resolution::{self, Converter};
-use super::{Block, Stage, Term, TermKind};
-use crate::keys::{Key, Takes};
+use super::{Block, SensorKind, Stage, Term, TermKind};
+use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::Sign;
 
 pub(super) static KIND: TermKind = TermKind {
@@ -19,15 +19,23 @@ pub(super) static KIND: TermKind = TermKind {
         }]
     },
     build: |values, context| {
-        let Some(range) = values.scalar("range") else { return Ok(None) };
-        let limits = match resolution::converter(values, context.sensor)? {
-            Some(Converter { lsb, counts: Some((low, high)) }) => (low * lsb, high * lsb),
-            _ => (-range, range),
-        };
-        let (low, high) = (limits.0.max(-range), limits.1.min(range));
-        Ok(Some(Box::new(Clip { low, high, mount: context.mount })))
+        let clip = |(low, high)| Box::new(Clip { low, high, mount: context.mount }) as Box<dyn Term>;
+        Ok(limits(values, context.sensor)?.map(clip))
     },
 };
+
+/// The least and greatest reading on a chip's axis, in the reading's unit; `None` where nothing clips.
+///
+/// # Errors
+/// A resolution that cannot be.
+pub fn limits(values: &Values, sensor: SensorKind) -> Result<Option<(f64, f64)>, KeyError> {
+    let Some(range) = values.scalar("range") else { return Ok(None) };
+    let limits = match resolution::converter(values, sensor)? {
+        Some(Converter { lsb, counts: Some((low, high)) }) => (low * lsb, high * lsb),
+        _ => (-range, range),
+    };
+    Ok(Some((limits.0.max(-range), limits.1.min(range))))
+}
 
 struct Clip {
     low: f64,

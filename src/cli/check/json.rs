@@ -1,0 +1,69 @@
+//! The plan for a program.
+
+use super::{noise, setup, terms, warnings};
+use crate::effects::effects;
+use crate::motion::method::Choice;
+use crate::scene::{Plan, Reference};
+use crate::sensor::{Sampling, lsb};
+use crate::{earth, wire};
+use serde_json::{Value, json};
+
+pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>) -> Value {
+    let sensors = plan.sensors.iter().map(|sensor| {
+        let noise = noise(sensor);
+        json!({
+            "name": sensor.kind.name(),
+            "rate_hz": sensor.rate.as_hz(),
+            "phase_s": sensor.phase.seconds(),
+            "sampling": match sensor.sampling { Sampling::Point => "point", Sampling::Average => "average" },
+            "mount": sensor.mount.map(|mount| mount.to_string()),
+            "part": sensor.part,
+            "unit": sensor.kind.unit(),
+            "noise_std": noise.as_ref().map_or(0.0, |noise| noise.per_sample),
+            "noise_density": noise.as_ref().map_or(0.0, |noise| noise.density),
+            "random_walk": noise.as_ref().map_or(0.0, |noise| noise.random_walk),
+            "range": sensor.values.scalar("range"),
+            "resolution": lsb(&sensor.values, sensor.kind),
+            "terms": terms(plan, sensor),
+        })
+    });
+    let links = plan.outputs.iter().map(|output| {
+        let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
+        let capacity = output.to.address.baud().map(|baud| f64::from(baud) / 10.0);
+        json!({ "to": output.to.to_string(), "packets_per_s": packets, "bytes_per_s": bytes, "capacity_bytes_per_s": capacity })
+    });
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "scene": plan.name,
+        "seed": plan.seed,
+        "duration_s": plan.duration.seconds(),
+        "moving_until_s": plan.trajectory.moving_until().min(plan.duration).seconds(),
+        "axes": plan.axes.to_string(),
+        "earth": {
+            "gravity_m_s2": plan.trajectory.gravity().length(),
+            "field_ut": plan.trajectory.field().length(),
+            "declination_deg": earth::declination(plan.trajectory.field()).to_degrees(),
+            "latitude_deg": plan.site.map(|site| site.latitude.to_degrees()),
+            "longitude_deg": plan.site.map(|site| site.longitude.to_degrees()),
+            "altitude_m": plan.site.map(|site| site.altitude),
+        },
+        "reference": reference.map(|(reference, choice)| {
+            json!({
+                "from": reference.from(),
+                "method": reference.method(),
+                "rate_hz": reference.rate().as_hz(),
+                "chosen": choice.map(|choice| json!({
+                    "max_error_deg": choice.error_deg,
+                    "ns_per_simulated_s": choice.ns_per_simulated_s,
+                    "why": choice.to_string(),
+                })),
+            })
+        }),
+        "sensors": sensors.collect::<Vec<_>>(),
+        "effects": effects(plan),
+        "links": links.collect::<Vec<_>>(),
+        "limits": plan.limits.iter().map(|(limit, _)| limit).collect::<Vec<_>>(),
+        "drawn": plan.drawn,
+        "warnings": warnings(plan),
+    })
+}

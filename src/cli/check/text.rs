@@ -1,0 +1,129 @@
+//! The plan for a person.
+
+use super::effects;
+use super::{Noise, noise, setup, shown, terms, warnings};
+use crate::motion::method::Choice;
+use crate::report::{number, table};
+use crate::scene::{Plan, Reference};
+use crate::sensor::{Sampling, SensorPlan, lsb};
+use crate::time::SimTime;
+use crate::{earth, wire};
+
+pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>) -> String {
+    let mut text = heading(plan);
+    if let Some((reference, choice)) = reference {
+        let (from, method, rate) = (reference.from(), reference.method(), reference.rate());
+        text += &format!("reference.csv: from {from} by {method} at {rate}\n");
+        text += &choice.map_or(String::new(), |choice| format!("chosen: {choice}\n"));
+    }
+    text += &format!("\n{}", sensors(plan));
+    text += "\nOne-sided density (datasheets) = √2 · random walk (Allan deviation at 1 s; Kalibr's noise density).\n";
+    text += &format!("\n{}", effects::text(plan));
+    if !plan.outputs.is_empty() {
+        text += &format!("\n{}", outputs(plan));
+    }
+    for (limit, _) in &plan.limits {
+        text += &format!("limit: {limit}\n");
+    }
+    for drawn in &plan.drawn {
+        text += &format!("drawn: {} = {}\n", drawn.key, drawn.value);
+    }
+    for warning in warnings(plan) {
+        text += &format!("warning: {warning}\n");
+    }
+    text
+}
+
+fn heading(plan: &Plan) -> String {
+    let mut text = format!(
+        "{}: {}, seed {}, {} axes\ngravity {} m/s², field {} µT, declination {} deg\n",
+        plan.name,
+        plan.duration,
+        plan.seed,
+        plan.axes,
+        number(plan.trajectory.gravity().length()),
+        number(plan.trajectory.field().length()),
+        number(earth::declination(plan.trajectory.field()).to_degrees()),
+    );
+    if let Some(site) = plan.site {
+        let (latitude, longitude) = (site.latitude.to_degrees(), site.longitude.to_degrees());
+        let day =
+            plan.day.map_or(String::new(), |day| format!(", {}-{:02}-{:02}", day.year, day.month, day.day));
+        text += &format!(
+            "at {} deg north, {} deg east, {} m{day}\n",
+            number(latitude),
+            number(longitude),
+            number(site.altitude)
+        );
+    }
+    text
+}
+
+fn sensors(plan: &Plan) -> String {
+    let rows = plan.sensors.iter().map(|sensor| {
+        let (unit, walk_unit, scale) = shown(sensor.kind);
+        let amount = |value: f64, unit: &str| format!("{} {unit}", number(value * scale));
+        let noise = noise(sensor);
+        let say = |pick: fn(&Noise) -> f64, unit: &str| {
+            noise.as_ref().map_or("-".into(), |noise| amount(pick(noise), unit))
+        };
+        vec![
+            sensor.kind.to_string(),
+            sensor.rate.to_string(),
+            sensor.part.unwrap_or("-").to_string(),
+            say(|noise| noise.per_sample, unit),
+            say(|noise| noise.density, &format!("{unit}/√Hz")),
+            say(|noise| noise.random_walk, walk_unit),
+            lsb(&sensor.values, sensor.kind).map_or("-".into(), |lsb| amount(lsb, unit)),
+            terms(plan, sensor).join(" "),
+        ]
+    });
+    let heading = [
+        "sensor",
+        "rate",
+        "part",
+        "noise/sample",
+        "one-sided density",
+        "random walk",
+        "count",
+        "terms evaluated",
+    ];
+    let table = table(&heading, &rows.collect::<Vec<_>>());
+    plan.sensors.iter().fold(table, |text, sensor| text + &manner(sensor))
+}
+
+/// How a sensor samples, and what else the scene says of it.
+fn manner(sensor: &SensorPlan) -> String {
+    let (unit, _, scale) = shown(sensor.kind);
+    let mut text = format!(
+        "{}: {}",
+        sensor.kind,
+        match sensor.sampling {
+            Sampling::Point => "the value at the tick",
+            Sampling::Average => "the mean since the tick before",
+        }
+    );
+    if sensor.phase > SimTime::ZERO {
+        text += &format!(", from {} on", sensor.phase);
+    }
+    if let Some(range) = sensor.values.scalar("range") {
+        text += &format!(", within ±{} {unit}", number(range * scale));
+    }
+    if let Some(mount) = sensor.mount {
+        text += &format!(", mounted {mount}");
+    }
+    text + "\n"
+}
+
+fn outputs(plan: &Plan) -> String {
+    let rows = plan.outputs.iter().map(|output| {
+        let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
+        let share = output
+            .to
+            .address
+            .baud()
+            .map_or("-".into(), |baud| format!("{:.0} %", 1000.0 * bytes / f64::from(baud)));
+        vec![output.to.to_string(), number(packets), number(bytes), share]
+    });
+    table(&["output", "packets/s", "bytes/s", "of baud rate"], &rows.collect::<Vec<_>>())
+}

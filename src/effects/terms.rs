@@ -1,0 +1,106 @@
+//! Sizes of the error terms that a sensor uses, each from its own values.
+
+use super::{EffectKind, Found, Judge, Survey};
+use crate::geometry::Vector;
+use crate::keys::{Key, Takes, Values};
+use crate::sensor::{TERMS, bias_step, limits, lsb, white_noise};
+use glam::DVec3;
+
+/// Turn-on bias: its own size.
+pub(super) static BIAS: EffectKind = EffectKind {
+    name: "bias",
+    judge: Judge::Both,
+    find: |survey| used(survey, "bias", survey.sensor.values.vector("bias")?.abs(), "constant"),
+};
+
+/// Bias instability, a first-order Gauss-Markov process: σ throughout, or `σ·√(1 − e^(−2T/τ))` at the scene's end
+/// where it starts from zero (Gelb, *Applied Optimal Estimation*, 1974, sec. 2.2).
+pub(super) static BIAS_INSTABILITY: EffectKind = EffectKind {
+    name: "bias_instability",
+    judge: Judge::Both,
+    find: |survey| {
+        let values = &survey.sensor.values;
+        let (sigma, tau) = (values.vector("bias_instability")?, values.vector("correlation_time")?);
+        if values.word("bias_instability_start") != Some("zero") {
+            return used(survey, "bias_instability", sigma, "standard deviation");
+        }
+        let grown = (survey.span() / tau).to_array().map(|x| libm::sqrt(-libm::expm1(-2.0 * x)));
+        used(survey, "bias_instability", sigma * DVec3::from_array(grown), "standard deviation at the end")
+    },
+};
+
+/// Bias walk: n steps of σ are `σ·√n` wide at the last sample, for a rate random walk `K·√T` (IEEE Std 952-1997,
+/// annex C).
+pub(super) static BIAS_WALK: EffectKind = EffectKind {
+    name: "bias_walk",
+    judge: Judge::Both,
+    find: |survey| {
+        let step = bias_step(&survey.sensor.values, &survey.sensor.context(survey.plan.seed));
+        let steps = survey.ticks.saturating_sub(1) as f64;
+        used(survey, "bias_walk", step * libm::sqrt(steps), "standard deviation at the end")
+    },
+};
+
+/// White noise: the standard deviation of one sample. It is set against the count alone: noise below half a count
+/// mostly rounds away.
+pub(super) static WHITE_NOISE: EffectKind = EffectKind {
+    name: "white_noise",
+    judge: Judge::Resolution,
+    find: |survey| {
+        let sensor = survey.sensor;
+        let sigma = white_noise::sigma(&sensor.values, sensor.kind, sensor.rate).ok()?;
+        used(survey, "white_noise", sigma, "standard deviation")
+    },
+};
+
+/// Range: how far the error-free reading goes beyond the limits, on the chip's axes and brought to the body's.
+pub(super) static RANGE: EffectKind = EffectKind {
+    name: "range",
+    judge: Judge::Both,
+    find: |survey| {
+        let sensor = survey.sensor;
+        let (low, high) = limits(&sensor.values, sensor.kind).ok()??;
+        let mount = sensor.mount.unwrap_or_default();
+        let cut = survey.largest(|look| {
+            let on_chip = mount.to_chip(survey.error_free(look)).v;
+            let beyond = on_chip - on_chip.clamp(DVec3::splat(low), DVec3::splat(high));
+            mount.to_body(Vector::from_vec(beyond)).v
+        });
+        used(survey, "range", cut, "largest part cut off")
+    },
+};
+
+/// Resolution: rounding moves a reading by half a count at most (and by `count/√12` RMS where readings spread over
+/// several counts). It is set against the noise alone.
+pub(super) static RESOLUTION: EffectKind = EffectKind {
+    name: "resolution",
+    judge: Judge::Noise,
+    find: |survey| {
+        let count = lsb(&survey.sensor.values, survey.sensor.kind)?;
+        used(survey, "resolution", DVec3::splat(count / 2.0), "half a count")
+    },
+};
+
+/// A term that the sensor uses; nothing where it does not.
+fn used(survey: &Survey<'_>, term: &str, size: DVec3, statistic: &'static str) -> Option<Found> {
+    survey.terms.contains(&term).then(|| Found { key: key(survey, term), ..Found::modelled(size, statistic) })
+}
+
+/// The key that switches a term on: the first that says anything.
+pub(super) fn key(survey: &Survey<'_>, term: &str) -> Option<String> {
+    let sensor = survey.sensor;
+    let kind = TERMS.into_iter().find(|kind| kind.name == term)?;
+    let keys = (kind.keys)(sensor.kind);
+    let key = keys.iter().find(|key| says_something(key, &sensor.values))?;
+    Some(format!("{}.{}", sensor.kind, key.name))
+}
+
+fn says_something(key: &Key, values: &Values) -> bool {
+    match key.takes {
+        Takes::Scalar(_) => values.scalar(key.name).is_some_and(|value| value != 0.0),
+        Takes::PerAxis(_) | Takes::BodyVector(_) => {
+            values.vector(key.name).is_some_and(|value| value != DVec3::ZERO)
+        }
+        _ => values.has(key.name) && key.default.is_none(),
+    }
+}

@@ -1,0 +1,146 @@
+//! `ratetable check` as a process: what a person reads of the effects, and what a program does.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+const SCENE: &str = r#"
+name = "yawing"
+limits = ["sensors.gyro.dropped<1"]
+[[motion]]
+kind = "rotate"
+yaw = "30 deg/s"
+duration = "10 s"
+[gyro]
+part = "MPU-9250"
+rate = "200 Hz"
+bias = "0 deg/s"
+bias_instability = "3 deg/h"
+correlation_time = "300 s"
+[accel]
+rate = "100 Hz"
+phase = "2 ms"
+sampling = "average"
+[reference]
+method = "magnus-4"
+"#;
+
+fn check(arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("yawing.toml");
+    std::fs::write(&scene, SCENE).unwrap();
+    let mut command = Command::cargo_bin("ratetable").unwrap();
+    let done = command.arg("check").arg(&scene).args(arguments).assert().success();
+    String::from_utf8(done.get_output().stdout.clone()).unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&check(&[arguments, &["--json"]].concat())).unwrap()
+}
+
+fn effect<'a>(plan: &'a Value, sensor: &str, name: &str) -> &'a Value {
+    let found = plan["effects"].as_array().unwrap().iter();
+    let mut found = found.filter(|effect| effect["sensor"] == sensor && effect["effect"] == name);
+    let one = found.next().unwrap_or_else(|| panic!("{sensor}: {name}"));
+    assert!(found.next().is_none(), "{name} is there once");
+    one
+}
+
+#[test]
+fn a_program_reads_each_effect_with_its_size_what_it_is_set_against_and_its_verdict() {
+    let plan = json(&[]);
+    let wander = effect(&plan, "gyro", "bias_instability");
+    let size = wander["size"].as_f64().unwrap();
+    assert!((size - (3.0f64 / 3600.0).to_radians()).abs() < 1e-12, "{wander}");
+    assert_eq!((&wander["unit"], &wander["modelled"]), (&"rad/s".into(), &true.into()));
+    // 16.4 LSB/(deg/s), and 0.01 deg/s/√Hz at 200 Hz.
+    let against = |key: &str| wander["against"][key].as_f64().unwrap().to_degrees();
+    assert!((against("resolution") * 16.4 - 1.0).abs() < 1e-9 && (against("noise") - 0.1).abs() < 1e-12);
+    assert_eq!(
+        (&wander["verdict"], &wander["key"]),
+        (&"modelled but below".into(), &"gyro.bias_instability".into())
+    );
+
+    let bias = effect(&plan, "gyro", "bias");
+    assert_eq!(bias["verdict"], "left out but would be seen", "the datasheet's tolerance: {bias}");
+    let spin = effect(&plan, "accel", "lever_arm");
+    assert!(
+        spin["key"].is_null()
+            && spin["against"]["noise"].is_null()
+            && spin["against"]["resolution"].is_null()
+    );
+
+    let louder = json(&["--set", "gyro.bias_instability=2 deg/s"]);
+    assert_eq!(effect(&louder, "gyro", "bias_instability")["verdict"], "modelled and seen");
+}
+
+#[test]
+fn a_program_reads_the_rest_of_the_plan() {
+    let plan = json(&[]);
+    assert_eq!(
+        plan["reference"],
+        serde_json::json!({ "from": "gyro", "method": "magnus-4", "rate_hz": 200.0 })
+    );
+    assert_eq!(plan["limits"], serde_json::json!(["sensors.gyro.dropped<1"]));
+    let [gyro, accel] = [&plan["sensors"][0], &plan["sensors"][1]];
+    assert_eq!(
+        (&gyro["sampling"], &gyro["mount"], &gyro["phase_s"]),
+        (&"point".into(), &"flu".into(), &0.0.into())
+    );
+    assert!((gyro["range"].as_f64().unwrap().to_degrees() - 2000.0).abs() < 1e-9);
+    assert_eq!(
+        (&accel["sampling"], &accel["mount"], &accel["phase_s"]),
+        (&"average".into(), &Value::Null, &0.002.into())
+    );
+    assert!((plan["earth"]["gravity_m_s2"].as_f64().unwrap() - 9.80665).abs() < 1e-12);
+    assert_eq!(plan["moving_until_s"], 10.0);
+}
+
+#[test]
+fn a_person_reads_the_same_grouped_by_sensor_with_the_rule_beneath() {
+    let text = check(&[]);
+    for line in [
+        "reference.csv: from gyro by magnus-4 at 200 Hz",
+        "gyro: the value at the tick, within ±2000 deg/s, mounted flu",
+        "accel: the mean since the tick before, from 0.002 s on",
+        "consider gyro.bias; the datasheet of the MPU-9250 gives it",
+        "this version does not model it",
+        "gyro: half a count is 0.03049 deg/s, a tenth of the noise 0.01 deg/s",
+        "accel: neither noise nor resolution: an ideal sensor shows everything",
+        "at least half a count and a tenth of one sample's white noise",
+        "limit: sensors.gyro.dropped<1",
+    ] {
+        assert!(text.contains(line), "{line} in\n{text}");
+    }
+    let column = |line: &str| line.split_whitespace().next().map(str::to_string);
+    let table = text.lines().skip_while(|line| !line.starts_with("sensor  effect")).skip(1);
+    let rows: Vec<_> = table.take_while(|line| !line.is_empty()).collect();
+    let groups: Vec<_> =
+        rows.iter().filter(|row| !row.starts_with(' ')).filter_map(|row| column(row)).collect();
+    assert_eq!(groups, ["gyro", "accel"], "each sensor is named once:\n{text}");
+
+    let plan = json(&[]);
+    assert_eq!(plan["effects"].as_array().unwrap().len(), rows.len());
+    let verdicts: BTreeSet<_> = plan["effects"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|effect| effect["verdict"].as_str().unwrap())
+        .collect();
+    assert_eq!(verdicts.len(), 4, "this scene has each of them: {verdicts:?}");
+    for verdict in verdicts {
+        assert!(rows.iter().any(|row| row.contains(verdict)), "{verdict} in\n{text}");
+    }
+}
+
+#[test]
+fn a_reference_that_is_chosen_is_shown_with_its_error_and_why() {
+    let auto = ["--set", "reference.method=auto", "--set", "reference.tolerance=1e-6 deg"];
+    let chosen = &json(&auto)["reference"];
+    assert_ne!(chosen["method"], "auto");
+    assert!(chosen["chosen"]["max_error_deg"].as_f64().unwrap() <= 1e-6, "{chosen}");
+    let text = check(&auto);
+    let method = chosen["method"].as_str().unwrap();
+    assert!(text.contains(&format!("reference.csv: from gyro by {method} at ")), "{text}");
+    assert!(text.contains(&format!("chosen: {method} at ")), "{text}");
+}

@@ -1,0 +1,134 @@
+//! `ratetable study` as a process: its files, its columns, its refusals. With `--quick`: 0.6 s for the accuracy of four
+//! motions and 10 s for the stability (a tenth of the steps of drift) of one processor, which a study shares among all.
+
+use assert_cmd::Command;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+fn study(arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("ratetable").unwrap();
+    command.arg("study").args(arguments);
+    command
+}
+
+/// What it says when it refuses.
+fn refusal(arguments: &[&str]) -> String {
+    let output = study(arguments).assert().code(2).stdout("").get_output().stderr.clone();
+    String::from_utf8(output).unwrap()
+}
+
+fn rows(file: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut reader = csv::Reader::from_path(file).unwrap();
+    let heading = reader.headers().unwrap().iter().map(str::to_string).collect();
+    let rows = reader.records().map(|row| row.unwrap().iter().map(str::to_string).collect());
+    (heading, rows.collect())
+}
+
+fn column(file: &Path, name: &str) -> BTreeSet<String> {
+    let (heading, rows) = rows(file);
+    let at = heading.iter().position(|column| column == name).unwrap();
+    rows.into_iter().map(|row| row[at].clone()).collect()
+}
+
+/// The text of a drawing, every element of it.
+fn words_of_svg(file: &Path) -> String {
+    let text = std::fs::read_to_string(file).unwrap();
+    let drawing =
+        roxmltree::Document::parse(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    assert_eq!(drawing.root_element().tag_name().name(), "svg");
+    assert_eq!(drawing.root_element().tag_name().namespace(), Some("http://www.w3.org/2000/svg"));
+    drawing.descendants().filter_map(|node| node.text()).collect::<Vec<_>>().join(" ")
+}
+
+fn files(folder: &Path) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+}
+
+#[test]
+fn all_studies_of_a_scene_write_their_tables_and_charts() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    let done = study(&["coning", "--quick", "--out", out.to_str().unwrap()]).assert().success();
+    let text = String::from_utf8(done.get_output().stdout.clone()).unwrap();
+    assert!(text.contains("coning") && text.contains("magnus-4"), "{text}");
+
+    let names = ["accuracy.csv", "accuracy.svg", "stability.csv", "stability.svg"];
+    assert_eq!(files(&out), names.map(String::from).into());
+    let (accuracy, stability) = (out.join("accuracy.csv"), out.join("stability.csv"));
+    let columns = [
+        "method",
+        "motion",
+        "rate_hz",
+        "precision",
+        "error_deg",
+        "norm_error",
+        "ns_per_step",
+        "ns_per_simulated_s",
+    ];
+    assert_eq!(rows(&accuracy).0, columns);
+    assert_eq!(rows(&stability).0, ["method", "case", "verdict", "figure", "first_failing_step"]);
+
+    let motions = ["A", "B", "C", "D", "coning"].map(String::from);
+    assert_eq!(column(&accuracy, "motion"), motions.clone().into(), "the scene joins the built-in motions");
+    let methods = column(&accuracy, "method");
+    assert!(methods.len() == 14 && methods == column(&stability, "method"), "{methods:?}");
+    assert_eq!(column(&stability, "verdict"), ["stable", "degraded", "fails"].map(String::from).into());
+    let drawn = words_of_svg(&out.join("accuracy.svg"));
+    for word in motions.iter().chain(&methods) {
+        assert!(drawn.contains(word.as_str()), "{word} in {drawn}");
+    }
+    assert!(words_of_svg(&out.join("stability.svg")).contains("paper"));
+}
+
+#[test]
+fn one_study_writes_its_own_files_and_an_existing_folder_is_refused_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    let arguments = ["accuracy", "--quick", "--json", "--out", out.to_str().unwrap()];
+    let done = study(&arguments).assert().success();
+    let results: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    assert!(results["stability"].is_null() && results["quick"] == true, "{results}");
+    assert_eq!(files(&out), ["accuracy.csv", "accuracy.svg"].map(String::from).into());
+    let rows = rows(&out.join("accuracy.csv")).1;
+    assert_eq!(results["accuracy"].as_array().unwrap().len(), rows.len(), "the same rows for all");
+
+    std::fs::write(out.join("accuracy.csv"), "mine").unwrap();
+    let why = refusal(&arguments);
+    assert!(why.contains(out.to_str().unwrap()) && why.contains("--force"), "{why}");
+    assert_eq!(std::fs::read_to_string(out.join("accuracy.csv")).unwrap(), "mine", "nothing was touched");
+}
+
+#[test]
+fn the_study_of_stability_writes_its_own_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    study(&["stability", "--quick", "--out", out.to_str().unwrap()]).assert().success();
+    assert_eq!(files(&out), ["stability.csv", "stability.svg"].map(String::from).into());
+}
+
+#[test]
+fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene() {
+    for (arguments, says) in [
+        (
+            &["acuracy"][..],
+            "`acuracy` is neither a study (accuracy, stability, all) nor a scene, built in or a file; did you mean `accuracy`?",
+        ),
+        (
+            &["acuracy", "coning"],
+            "`acuracy` is no study (accuracy, stability, all); did you mean `accuracy`?",
+        ),
+        (&["coning", "still"], "`coning` is a scene, and so `still` is one too many"),
+        (&["accuracy", "nowhere.toml"], "neither a scene file"),
+    ] {
+        let why = refusal(arguments);
+        assert!(why.contains(says), "{arguments:?}: {why}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let bad = folder.path().join("bad.toml");
+    std::fs::write(&bad, "duration = \"10 s\"\n[gyro]\nrate = 100\n").unwrap();
+    for arguments in [&["all", bad.to_str().unwrap()][..], &[bad.to_str().unwrap()]] {
+        let why = refusal(arguments);
+        assert!(why.contains("bad.toml:3:") && why.contains("a unit is missing"), "{why}");
+    }
+}
