@@ -79,7 +79,7 @@ fn a_program_reads_the_rest_of_the_plan() {
     let plan = json(&[]);
     assert_eq!(
         plan["reference"],
-        serde_json::json!({ "from": "gyro", "method": "magnus-4", "rate_hz": 200.0 })
+        serde_json::json!({ "from": "gyro", "method": "magnus-4", "rate_hz": 200.0, "chosen": null })
     );
     assert_eq!(plan["limits"], serde_json::json!(["sensors.gyro.dropped<1"]));
     let [gyro, accel] = [&plan["sensors"][0], &plan["sensors"][1]];
