@@ -8,6 +8,7 @@
 //! gyro.csv accel.csv mag.csv      one for each sensor that the scene has
 //! reference.csv   attitude as a method computes it, where the scene asks for it
 //! estimate.csv    what the other side answered, where it did
+//! motion-0.csv    a log that a motion replays, as it was
 //! ```
 //!
 //! Everything is in the scene's axes. The folder appears under its name only when it is complete. A format is a
@@ -34,7 +35,7 @@ pub use table::{Column, Table};
 
 use crate::geometry::Attitude;
 use crate::player::{self, Player};
-use crate::scene::Plan;
+use crate::scene::{Attached, Plan};
 use crate::time::SimTime;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -128,7 +129,9 @@ fn write_in_blocks(
 
     let readme = readme::text(plan, &files, quality.as_ref());
     let scene = plan.resolved_until(end, settled.as_ref().map(|settled| &settled.reference));
+    let attached = attached(plan)?;
     let mut others = vec![("README.md", readme.as_bytes()), ("scene.toml", scene.as_bytes())];
+    others.extend(attached.iter().map(|(name, contents)| (*name, contents.as_slice())));
     others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
     for (name, contents) in &others {
         folder.put(name, contents)?;
@@ -140,6 +143,12 @@ fn write_in_blocks(
     folder.commit()?;
     let rows = files.iter().map(|file| file.rows).sum();
     Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })
+}
+
+/// The files that the scene as resolved names.
+fn attached(plan: &Plan) -> Result<Vec<(&str, Vec<u8>)>, DatasetError> {
+    let read = |file: &'_ Attached| file.contents().map_err(DatasetError::io("copy", file.path()));
+    plan.attached.iter().map(|file| Ok((file.name.as_str(), read(file)?))).collect()
 }
 
 /// Every moment into the book; gives back each sensor's clipped samples.

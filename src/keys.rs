@@ -10,6 +10,7 @@ use crate::quantity::{Kind, Resolution};
 use crate::time::SimTime;
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// One key of a table.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,49 @@ pub enum Takes {
     Word(&'static [&'static str]),
     /// An array of attitudes, each with its time.
     Keyframes,
+    /// The path of a text file, relative to the scene's folder; the scene reads it.
+    File,
+    /// The names of columns of that file.
+    Columns(Columns),
+}
+
+/// Columns that belong together, such as the three of a vector.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns {
+    /// How many.
+    pub count: usize,
+    /// What they measure; `None` = numbers without a unit.
+    pub kind: Option<Kind>,
+}
+
+impl Columns {
+    /// As a scene writes them.
+    pub fn example(&self) -> String {
+        let names = ["\"x\"", "\"y\"", "\"z\""];
+        match (self.kind, self.count) {
+            (Some(kind), 1) => format!("{{ column = \"t\", unit = \"{}\" }}", kind.units()[0]),
+            (Some(kind), count) => {
+                let names = names[..count.min(3)].join(", ");
+                format!("{{ columns = [{names}], unit = \"{}\" }}", kind.units()[0])
+            }
+            (None, _) => "[\"w\", \"x\", \"y\", \"z\"]".into(),
+        }
+    }
+}
+
+/// A text file that was read.
+#[derive(Clone)]
+pub struct Text {
+    /// What messages call it: its path.
+    pub name: String,
+    /// What stands in it.
+    pub contents: String,
+}
+
+impl fmt::Debug for Text {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({} bytes)", self.name, self.contents.len())
+    }
 }
 
 /// A value as read: SI units (µT for a field), the program's own axes.
@@ -58,6 +102,10 @@ pub enum Value {
     Word(&'static str),
     /// Of [`Takes::Keyframes`], in the order written.
     Keyframes(Vec<(SimTime, Attitude)>),
+    /// Of [`Takes::File`].
+    File(Text),
+    /// Of [`Takes::Columns`]: their names, and how many inside units one of theirs is.
+    Columns(Vec<String>, f64),
 }
 
 /// The values of one table, by key. A getter returns `None` for a key that is absent and has no default.
@@ -132,6 +180,22 @@ impl Values {
             other => mismatch(key, other),
         }
     }
+
+    /// A file.
+    pub fn file(&self, key: &str) -> Option<&Text> {
+        match self.0.get(key)? {
+            Value::File(value) => Some(value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// The names of columns, and how many inside units one of theirs is.
+    pub fn columns(&self, key: &str) -> Option<(&[String], f64)> {
+        match self.0.get(key)? {
+            Value::Columns(names, unit) => Some((names, *unit)),
+            other => mismatch(key, other),
+        }
+    }
 }
 
 /// A table that asks for a key as another kind than it declared is a defect of the program, found by its tests.
@@ -153,4 +217,20 @@ impl KeyError {
     pub fn new(key: &'static str, message: impl Into<String>) -> KeyError {
         KeyError { key, message: message.into() }
     }
+}
+
+/// The known name nearest to `given`, if it is near.
+pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = given.to_lowercase();
+    known
+        .into_iter()
+        .map(|name| (name, strsim::jaro_winkler(&lower, &name.to_lowercase())))
+        .filter(|&(_, likeness)| likeness > 0.75)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(name, _)| name)
+}
+
+/// The question to end a refusal with: whether the nearest name was meant, if one is near.
+pub fn did_you_mean<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(given, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"))
 }

@@ -11,6 +11,7 @@ mod hold;
 mod integrated;
 pub mod method;
 mod random;
+mod replay;
 mod rock;
 mod rotate;
 mod trajectory;
@@ -19,7 +20,7 @@ mod waypoints;
 pub use trajectory::{Force, Push, Trajectory, Truth};
 
 use crate::double::Double;
-use crate::geometry::{Attitude, Body, Nav, Vector};
+use crate::geometry::{Attitude, Axes, Body, Nav, Vector};
 use crate::keys::{Key, KeyError, Values};
 use crate::time::SimTime;
 use std::fmt::Debug;
@@ -37,14 +38,31 @@ pub trait Motion: Debug + Send + Sync {
     /// A bound on how fast anything in it changes, rad/s: sets the panels of a mean over an interval.
     fn fastest(&self) -> f64;
 
-    /// The times since its start, between start and end, at which its angular rate or acceleration may jump.
-    fn seams(&self) -> Vec<SimTime> {
-        Vec::new()
-    }
-
     /// The speed over the ground, m/s: 0 for a vehicle that turns where it stands.
     fn speed(&self) -> f64 {
         0.0
+    }
+
+    /// The first time after `t`, both from the segment's start, at which it is not smooth: a mean is taken from one
+    /// to the next.
+    fn next_seam(&self, t: SimTime) -> Option<SimTime> {
+        let _ = t;
+        None
+    }
+
+    /// How long it lasts of itself, where its kind [has a length](MotionKind::has_length).
+    fn length(&self) -> Option<SimTime> {
+        None
+    }
+
+    /// The attitude at its start, if it is given and not that at which it finds the vehicle.
+    fn begins(&self) -> Option<Attitude> {
+        None
+    }
+
+    /// What a user should know of it before it is played.
+    fn warnings(&self) -> &[String] {
+        &[]
     }
 }
 
@@ -66,14 +84,16 @@ pub struct Context {
     pub duration: SimTime,
     /// Where the motion finds the vehicle.
     pub start: Attitude,
+    /// Whether the scene leaves that open: its first motion may begin elsewhere.
+    pub anywhere: bool,
     /// The scene's seed, from which a random motion comes.
     pub seed: u64,
     /// Which of the scene's motions it is, from 0: names its streams of random numbers.
     pub index: usize,
     /// The strength of gravity, m/s².
     pub gravity: f64,
-    /// +1 or −1: the sign that body y and z have in the scene's axes against Forward-Right-Down.
-    pub body_sign: f64,
+    /// The axes the scene is written in.
+    pub axes: Axes,
 }
 
 /// What a builder makes of a motion's values.
@@ -88,13 +108,23 @@ pub struct MotionKind {
     pub about: &'static str,
     /// Its keys besides `kind` and `duration`.
     pub keys: &'static [Key],
+    /// Whether it has a length of its own, so that `duration` may be left out.
+    pub has_length: bool,
     /// From values to a motion.
     pub build: fn(&Values, &Context) -> Built,
 }
 
 /// Every kind of motion.
-pub static KINDS: [&MotionKind; 7] =
-    [&hold::KIND, &rotate::KIND, &cone::KIND, &circle::KIND, &rock::KIND, &waypoints::KIND, &random::KIND];
+pub static KINDS: [&MotionKind; 8] = [
+    &hold::KIND,
+    &rotate::KIND,
+    &cone::KIND,
+    &circle::KIND,
+    &rock::KIND,
+    &waypoints::KIND,
+    &random::KIND,
+    &replay::KIND,
+];
 
 /// Standing still, after the last segment and when a scene has no motion.
 pub fn rest() -> Box<dyn Motion> {

@@ -8,8 +8,10 @@
 //! would be right. The plan carries the scene as resolved: every default, preset and drawn value filled in.
 
 pub mod builtin;
+mod columns;
 pub mod document;
 mod draw;
+mod file;
 mod fixed_keys;
 mod keyframes;
 mod output;
@@ -23,6 +25,7 @@ mod vehicle;
 
 pub use document::Place;
 pub use draw::Drawn;
+pub use file::Attached;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
 pub use output::{Destination, Output};
 pub use reference::{AUTO, Reference};
@@ -67,6 +70,10 @@ pub struct Plan {
     pub outputs: Vec<Output>,
     /// Values drawn once for this run.
     pub drawn: Vec<Drawn>,
+    /// Files that the scene as resolved names, which a copy of it needs beside it.
+    pub attached: Vec<Attached>,
+    /// What a user should know of the scene before it is played, each with its place.
+    pub warnings: Vec<String>,
     /// The scene as resolved, in TOML: playing it gives the same bytes.
     pub resolved: String,
 }
@@ -89,7 +96,8 @@ impl Plan {
         Plan::parse(&text, &name, &stem, sets)
     }
 
-    /// Reads a scene's text. `source` is what messages call it, `name` its name unless it gives one.
+    /// Reads a scene's text. `source` is what messages call it, `name` its name unless it gives one. A file that the
+    /// scene names is looked for in the folder of `source` as a path; one that `--set` names, in the current folder.
     ///
     /// # Errors
     /// Every mistake in it.
@@ -99,10 +107,12 @@ impl Plan {
         for set in sets {
             table.set(set).map_err(one)?;
         }
-        let reader = Reader::new();
+        let reader = Reader::new(source);
         let plan = read(&reader, table, name);
         match reader.finish() {
-            Ok(drawn) => Ok(Plan { drawn, ..plan }),
+            Ok(found) => {
+                Ok(Plan { drawn: found.drawn, attached: found.attached, warnings: found.warnings, ..plan })
+            }
             Err(mistakes) => Err(SceneError { mistakes }),
         }
     }
@@ -140,9 +150,9 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     reader.axes.set(axes);
     let limits = top.texts("limits");
 
-    let start = vehicle::start(&top);
+    let mut start = vehicle::start(&top);
     let earth = vehicle::earth(&top);
-    let motions = vehicle::motions(&top, earth.gravity.length(), start.attitude);
+    let motions = vehicle::motions(&top, earth.gravity.length(), &mut start);
     let forces = vehicle::forces(&top);
     let sensors = sensors::sensors(&top);
     let outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
@@ -197,6 +207,8 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         reference: reference.0,
         outputs: outputs.outputs,
         drawn: Vec::new(),
+        attached: Vec::new(),
+        warnings: Vec::new(),
         resolved: resolved.to_string(),
     }
 }

@@ -73,7 +73,7 @@ fn setup<'a>(plan: &'a Plan, output: &Output) -> Setup<'a> {
 
 /// What a user should think about before running the scene.
 fn warnings(plan: &Plan) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = plan.warnings.clone();
     for sensor in &plan.sensors {
         if noise(sensor).is_none() && lsb(&sensor.values, sensor.kind).is_none() {
             warnings.push(format!(

@@ -43,6 +43,7 @@ fn format(name: &str) -> Result<&'static Format, String> {
 pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
     dataset::may_write(&arguments.out, arguments.force)?;
+    plan.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
     let started = Instant::now();
     let bar = Bar::new(plan.duration);
     let stop = on_interrupt();

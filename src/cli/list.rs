@@ -115,6 +115,8 @@ fn declared(key: &Key) -> String {
         Takes::Duration => "time, such as \"2 s\"".into(),
         Takes::Word(words) => words.join(" or "),
         Takes::Keyframes => "an array, such as [{ t = \"2 s\", attitude = \"[0, 30, 0] deg\" }]".into(),
+        Takes::File => "a path, relative to the scene's folder".into(),
+        Takes::Columns(columns) => format!("columns, such as {}", columns.example()),
     };
     let default = key.default.map_or(String::new(), |default| format!(" (default {default})"));
     format!("  {}: {}; {takes}{default}\n", key.name, key.about)

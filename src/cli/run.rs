@@ -113,6 +113,7 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
     if arguments.span == Some(SimTime::FOREVER) && arguments.speed == Speed::Max {
         return Err(Refusal("--for forever at --speed max never ends and never waits: give a time".into()));
     }
+    plan.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
     for output in outputs {
         wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
         wire::warnings(output.to.protocol, &plan.sensors)

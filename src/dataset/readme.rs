@@ -60,7 +60,7 @@ pub(super) fn text(plan: &Plan, files: &[FileEntry], quality: Option<&Quality>) 
         heading(plan),
         conventions_section(plan),
         field_section(plan),
-        files_section(files),
+        files_section(plan, files),
         quality.map_or(String::new(), reference_section),
         readings_section(plan),
         loading_section(plan),
@@ -115,7 +115,7 @@ fn field_section(plan: &Plan) -> String {
     text
 }
 
-fn files_section(files: &[FileEntry]) -> String {
+fn files_section(plan: &Plan, files: &[FileEntry]) -> String {
     let mut text = String::from("## Files\n\n| file | rows | columns |\n|---|---|---|\n");
     for file in files {
         let columns: Vec<_> = file.columns.iter().map(|column| column.name.as_str()).collect();
@@ -130,6 +130,9 @@ fn files_section(files: &[FileEntry]) -> String {
 - Numbers are in the shortest form that reads back to the same double.
 ",
     );
+    for file in &plan.attached {
+        let _ = writeln!(text, "- `{}`: a log that the scene's motion replays, as it was read.", file.name);
+    }
     text
 }
 

@@ -615,3 +615,43 @@ fn a_scene_without_a_reference_has_none_and_one_beyond_numbers_says_why() {
     assert!(refused.contains("reference.csv cannot be computed: `paper` at"), "{refused}");
     assert!(!out.exists());
 }
+
+/// A dataset whose scene replays a log has the log beside it, and plays again to the same bytes, log and all.
+#[test]
+fn a_replayed_log_goes_with_the_dataset_which_plays_again_to_the_same_bytes() {
+    let home = tempfile::tempdir().unwrap();
+    let first = home.path().join("first");
+    write_to(&parsed(SEVERAL), SECOND, &first, false).unwrap();
+    let scene = "axes = \"enu-flu\"\n[[motion]]\nkind = \"hold\"\nduration = \"0.1 s\"\n[[motion]]\nkind = \"replay\"\nfile = \"first/truth.csv\"\nalign = \"start\"\n[gyro]\nrate = \"300 Hz\"\nsampling = \"average\"\n[accel]\nrate = \"100 Hz\"\nnoise_std = \"0.1 m/s^2\"\n";
+    let file = home.path().join("scene.toml");
+    fs::write(&file, scene).unwrap();
+    let load = |path: &Path| Plan::load(&path.display().to_string(), &[]).unwrap();
+    let (second, third) = (home.path().join("second"), home.path().join("third"));
+    let plan = load(&file);
+    write_to(&plan, plan.duration, &second, false).unwrap();
+    let again = load(&second.join("scene.toml"));
+    write_to(&again, again.duration, &third, false).unwrap();
+    let (second, third) = (contents(&second), contents(&third));
+    assert_eq!(second["motion-1.csv"], contents(&first)["truth.csv"]);
+    for (name, bytes) in &second {
+        let [before, after] = [bytes, &third[name]].map(|bytes| String::from_utf8_lossy(bytes));
+        assert!(before == after, "{name}: {before}\n{after}");
+    }
+    let manifest = String::from_utf8(second["manifest.json"].clone()).unwrap();
+    assert!(manifest.contains("\"name\": \"motion-1.csv\""), "{manifest}");
+    assert!(String::from_utf8(second["README.md"].clone()).unwrap().contains("`motion-1.csv`: a log"));
+}
+
+#[test]
+fn a_log_that_changed_since_it_was_read_is_not_copied() {
+    let home = tempfile::tempdir().unwrap();
+    let (scene, log) = (home.path().join("s.toml"), home.path().join("log.csv"));
+    fs::write(&scene, "[[motion]]\nkind = \"replay\"\nfile = \"log.csv\"\n[gyro]\nrate = \"10 Hz\"\n")
+        .unwrap();
+    fs::write(&log, "t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,0,0\n").unwrap();
+    let plan = Plan::load(&scene.display().to_string(), &[]).unwrap();
+    fs::write(&log, "t_s,qw,qx,qy,qz\n0,1,0,0,0\n2,1,0,0,0\n5,1,0,0,0\n").unwrap();
+    let error = write_to(&plan, plan.duration, &home.path().join("out"), false).unwrap_err().to_string();
+    assert!(error.starts_with("cannot copy ") && error.contains("log.csv: it has changed since"), "{error}");
+    assert!(!home.path().join("out").exists());
+}

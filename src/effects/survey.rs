@@ -51,6 +51,9 @@ impl<'a> Survey<'a> {
         // The last tick before a seam, and the first at or after it.
         let mut edges: Vec<_> = plan.trajectory.edges().collect();
         edges.sort_unstable();
+        // A recorded log has a seam at each of its rows.
+        let thin = edges.len().div_ceil(TICKS as usize).max(1);
+        let edges: Vec<_> = edges.into_iter().step_by(thin).collect();
         let seams = edges.iter().copied().chain([plan.duration]).map(before);
         chosen.extend(seams.flat_map(|k| [k.saturating_sub(1), k]).filter(|&k| k < ticks));
         chosen.sort_unstable();

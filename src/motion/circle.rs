@@ -9,7 +9,7 @@ use crate::double::Double;
 use crate::geometry::{Attitude, Euler, Nav, Vector, exp};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign, text_scalar};
-use crate::time::{NANOS, SimTime};
+use crate::time::SimTime;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -36,6 +36,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             about: "how long rolling in takes, and rolling out",
         },
     ],
+    has_length: false,
     build,
 };
 
@@ -44,9 +45,8 @@ struct Circle {
     bank: f64,
     /// m/s.
     speed: f64,
-    /// s.
-    entry: f64,
-    duration: f64,
+    entry: SimTime,
+    duration: SimTime,
     /// m/s².
     gravity: f64,
 }
@@ -71,34 +71,29 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
             format!("rolling in and out over {entry} each does not fit in the motion's {}", context.duration);
         return Err(KeyError::new("entry", message));
     }
-    Ok(Box::new(Circle {
-        bank,
-        speed,
-        entry: entry.seconds(),
-        duration: context.duration.seconds(),
-        gravity: context.gravity,
-    }))
+    Ok(Box::new(Circle { bank, speed, entry, duration: context.duration, gravity: context.gravity }))
 }
 
 impl Circle {
     /// (bank turned so far, its rate, heading turned so far, its rate): rad and rad/s, `t` in s.
     fn path(&self, t: f64) -> (f64, f64, f64, f64) {
+        let (entry, duration) = (self.entry.seconds(), self.duration.seconds());
         let rate = |bank: f64| self.gravity * libm::tan(bank) / self.speed;
-        let (roll_rate, entry_heading) = if self.entry > 0.0 && self.bank != 0.0 {
-            (self.bank / self.entry, self.rolled_heading(self.bank))
+        let (roll_rate, entry_heading) = if entry > 0.0 && self.bank != 0.0 {
+            (self.bank / entry, self.rolled_heading(self.bank))
         } else {
             (0.0, 0.0)
         };
-        let out = self.duration - self.entry;
-        if t < self.entry {
+        let out = duration - entry;
+        if t < entry {
             let bank = roll_rate * t;
             (bank, roll_rate, self.rolled_heading(bank), rate(bank))
-        } else if t < out || self.entry == 0.0 {
-            let bank = if self.entry > 0.0 { self.bank } else { 0.0 };
-            (bank, 0.0, entry_heading + rate(self.bank) * (t - self.entry), rate(self.bank))
+        } else if t < out || entry == 0.0 {
+            let bank = if entry > 0.0 { self.bank } else { 0.0 };
+            (bank, 0.0, entry_heading + rate(self.bank) * (t - entry), rate(self.bank))
         } else {
-            let bank = roll_rate * (self.duration - t);
-            let steady = rate(self.bank) * (out - self.entry);
+            let bank = roll_rate * (duration - t);
+            let steady = rate(self.bank) * (out - entry);
             let heading = 2.0 * entry_heading + steady - self.rolled_heading(bank);
             (bank, -roll_rate, heading, rate(bank))
         }
@@ -111,7 +106,7 @@ impl Circle {
         }
         // ln cos x = ½·ln(1 − sin² x), which keeps its precision for a small bank.
         let sine = libm::sin(bank);
-        -self.gravity * self.entry / (self.speed * self.bank) * 0.5 * libm::log1p(-sine * sine)
+        -self.gravity * self.entry.seconds() / (self.speed * self.bank) * 0.5 * libm::log1p(-sine * sine)
     }
 }
 
@@ -132,14 +127,14 @@ impl Motion for Circle {
     }
 
     fn fastest(&self) -> f64 {
-        let (_, _, _, turning) = self.path(self.entry);
-        let rolling = if self.entry > 0.0 { self.bank / self.entry } else { 0.0 };
+        let entry = self.entry.seconds();
+        let (_, _, _, turning) = self.path(entry);
+        let rolling = if entry > 0.0 { self.bank / entry } else { 0.0 };
         turning.abs().max(rolling.abs())
     }
 
-    fn seams(&self) -> Vec<SimTime> {
-        let at = |seconds: f64| SimTime(libm::round(seconds * NANOS as f64) as i64);
-        if self.entry > 0.0 { vec![at(self.entry), at(self.duration - self.entry)] } else { Vec::new() }
+    fn next_seam(&self, t: SimTime) -> Option<SimTime> {
+        [self.entry, self.duration - self.entry].into_iter().find(|&seam| seam > t)
     }
 
     fn speed(&self) -> f64 {
@@ -148,12 +143,20 @@ impl Motion for Circle {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::tests::rate_is_the_derivative_of_attitude;
     use super::*;
+    use crate::time::NANOS;
+
+    /// A motion, where it has seams, and its length.
+    pub(in crate::motion) fn example() -> (Box<dyn Motion>, Vec<SimTime>, SimTime) {
+        let seams = vec![SimTime(2 * NANOS), SimTime(18 * NANOS)];
+        (Box::new(circle(25.0, 2.0)), seams, SimTime(20 * NANOS))
+    }
 
     fn circle(bank_deg: f64, entry: f64) -> Circle {
-        Circle { bank: bank_deg.to_radians(), speed: 15.0, entry, duration: 20.0, gravity: 9.80665 }
+        let (entry, duration) = (SimTime((entry * NANOS as f64) as i64), SimTime(20 * NANOS));
+        Circle { bank: bank_deg.to_radians(), speed: 15.0, entry, duration, gravity: 9.80665 }
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             about: "turns round the cone a second",
         },
     ],
+    has_length: false,
     build: |values, context| {
         let (Some(half_angle), Some(frequency)) = (values.double("half_angle"), values.double("frequency"))
         else {
@@ -32,12 +33,12 @@ pub(super) static KIND: MotionKind = MotionKind {
                 "`cone` needs both `half_angle`, such as \"5 deg\", and `frequency`, such as \"2 Hz\"",
             ));
         };
-        Ok(Box::new(Cone::new(half_angle, frequency, context.body_sign)))
+        Ok(Box::new(Cone::new(half_angle, frequency, context.axes.body_sign())))
     },
 };
 
 #[derive(Debug)]
-struct Cone {
+pub(super) struct Cone {
     /// Sine and cosine of half the half-angle.
     half: (f64, f64),
     sin_angle: f64,
@@ -50,7 +51,7 @@ struct Cone {
 }
 
 impl Cone {
-    fn new(half_angle: Double, frequency: Double, sign: f64) -> Cone {
+    pub(super) fn new(half_angle: Double, frequency: Double, sign: f64) -> Cone {
         Cone {
             half: (half_angle / Double::from(2.0)).sin_cos(),
             sin_angle: half_angle.sin_cos().0,

@@ -8,6 +8,7 @@ pub(super) static KIND: MotionKind = MotionKind {
     name: "hold",
     about: "stands still at the attitude it finds",
     keys: &[],
+    has_length: false,
     build: |_, _| Ok(Box::new(Hold)),
 };
 

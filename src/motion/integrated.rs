@@ -3,8 +3,8 @@
 //! Sixth-order Magnus steps (S. Blanes, F. Casas, J. Oteo, J. Ros, *The Magnus expansion and some of its
 //! applications*, Physics Reports 470, 2009, sec. 5.4), halved until two solutions agree within 10⁻¹⁰ degrees over
 //! the whole segment; the finer, about 64 times nearer, is kept. Every step's end is a node, so that an attitude
-//! costs one step from the node before it, whatever was asked earlier. A node takes 40 bytes, and there are at most
-//! four million of them.
+//! costs one step from the node before it, whatever was asked earlier. A node takes 40 bytes, a step two of them, and
+//! there are at most four million steps.
 
 use super::{Kinematics, Motion};
 use crate::double::Double;
@@ -24,13 +24,13 @@ pub(super) trait BodyRate: Debug + Send + Sync {
 /// Two solutions nearer than this (rad, just below 10⁻¹⁰ degrees) are taken for the truth.
 const ENOUGH: f64 = 1.7e-12;
 
-/// The most nodes that are kept.
-const MOST_NODES: f64 = 4_194_304.0;
+/// The most steps of two nodes each.
+const MOST_STEPS: f64 = 4_194_304.0;
 
 /// A motion whose attitude is the solution of `q′ = ½·q ⊗ w(t)`.
 #[derive(Debug)]
 pub(super) struct Integrated<R> {
-    rate: R,
+    pub(super) rate: R,
     nodes: Vec<Node>,
 }
 
@@ -43,12 +43,12 @@ struct Node {
 
 impl<R: BodyRate> Integrated<R> {
     /// Solved between the first and the last of `edges` (seconds from the segment's start), between which the rate
-    /// is smooth. `None` if it changes too fast for so long: more than the nodes there may be would be needed.
+    /// is smooth. `None` if it changes too fast for so long: more than the steps there may be would be needed.
     pub(super) fn new(rate: R, edges: &[f64]) -> Option<Self> {
         let mut step = 0.5 / rate.fastest().max(1e-3);
         loop {
             let length: f64 = edges.windows(2).map(|edge| edge[1] - edge[0]).sum();
-            if length / step + edges.len() as f64 > MOST_NODES {
+            if length / step + edges.len() as f64 > MOST_STEPS {
                 return None;
             }
             if let Some(nodes) = solve(&rate, edges, step) {

@@ -32,6 +32,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             about: "nothing in it is faster than this",
         },
     ],
+    has_length: false,
     build,
 };
 

@@ -41,6 +41,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             about: "of the rate's sine at the start",
         },
     ],
+    has_length: false,
     build,
 };
 
@@ -63,8 +64,8 @@ fn build(values: &Values, context: &Context) -> Built {
         ));
     };
     let axis = match values.word("axis") {
-        Some("pitch") => DVec3::Y * context.body_sign,
-        Some("yaw") => DVec3::Z * context.body_sign,
+        Some("pitch") => DVec3::Y * context.axes.body_sign(),
+        Some("yaw") => DVec3::Z * context.axes.body_sign(),
         _ => DVec3::X,
     };
     Ok(Box::new(Rock { axis, amplitude, turns, phase: values.double("phase").unwrap_or_default() }))

@@ -39,6 +39,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             about: "about the body's z alone",
         },
     ],
+    has_length: false,
     build,
 };
 
@@ -56,7 +57,7 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
     match (values.triple("angular_rate"), &short[..]) {
         (Some(rate), []) => Ok(Box::new(Rotate::new(rate))),
         (None, &[(axis, key)]) => {
-            let sign = if axis == 0 { 1.0 } else { context.body_sign };
+            let sign = if axis == 0 { 1.0 } else { context.axes.body_sign() };
             let mut rate = [Double::from(0.0); 3];
             rate[axis] = values.double(key).unwrap_or_default() * Double::from(sign);
             Ok(Box::new(Rotate::new(rate)))

@@ -22,6 +22,7 @@ pub(super) static KIND: MotionKind = MotionKind {
         default: None,
         about: "each a time `t` since the motion's start and an `attitude` or a `quaternion`",
     }],
+    has_length: false,
     build,
 };
 
@@ -105,10 +106,15 @@ impl Motion for Waypoints {
         let of = |leg: &Leg| (1.875 * leg.turn.length() + 6.0) / (leg.end - leg.start).seconds();
         self.legs.iter().map(of).fold(0.0, f64::max)
     }
+
+    fn next_seam(&self, t: SimTime) -> Option<SimTime> {
+        let next = self.legs.partition_point(|leg| leg.end <= t);
+        self.legs.get(next).map(|leg| leg.end)
+    }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::tests::rate_is_the_derivative_of_attitude;
     use super::*;
     use crate::time::NANOS;
@@ -124,6 +130,12 @@ mod tests {
             at(2000, [-0.2, 0.1, -1.5]),
             at(3000, [-0.2, 0.1, -1.5]),
         ]
+    }
+
+    /// A motion, where it has seams, and its length.
+    pub(in crate::motion) fn example() -> (Box<dyn Motion>, Vec<SimTime>, SimTime) {
+        let seams = keys().iter().map(|(t, _)| *t).collect();
+        (Box::new(Waypoints::new(Attitude::IDENTITY, &keys())), seams, SimTime(4 * NANOS))
     }
 
     #[test]

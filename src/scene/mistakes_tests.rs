@@ -222,6 +222,12 @@ const SENSORS: &[Case] = &[
 ];
 
 const MOTIONS: &[Case] = &[
+    (motion!("kind = \"replay\""), &[("4:8", "`replay` needs a `file`, such as file = \"log.csv\"")]),
+    (motion!("kind = \"replay\"\nfile = 3"), &[("5:8", "`file` is a bare number; write it as a string")]),
+    (
+        motion!("kind = \"replay\"\nfile = \"none/there.csv\""),
+        &[("5:8", "`file` cannot read none/there.csv: No such file")],
+    ),
     (
         "[gyro]\nrate = \"1 Hz\"\n",
         &[("1:1", "a scene needs a motion or a duration, such as duration = \"10 s\"")],

@@ -393,6 +393,8 @@ impl<'r> Section<'r> {
             Takes::Duration => keys::Value::Time(self.time(name, key.default, Sign::NonNegative)?),
             Takes::Word(words) => keys::Value::Word(self.word(name, words, key.default.unwrap_or(words[0]))),
             Takes::Keyframes => keys::Value::Keyframes(self.keyframes(name)?),
+            Takes::File => keys::Value::File(self.file(name)?),
+            Takes::Columns(columns) => self.columns(name, &columns)?,
         })
     }
 

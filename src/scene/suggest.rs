@@ -1,20 +1,6 @@
 //! What a user may have meant: the nearest known name, or ours for a name from another tool.
 
-/// The known name nearest to `given`, if it is near.
-pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let lower = given.to_lowercase();
-    known
-        .into_iter()
-        .map(|name| (name, strsim::jaro_winkler(&lower, &name.to_lowercase())))
-        .filter(|&(_, likeness)| likeness > 0.75)
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(name, _)| name)
-}
-
-/// The question to end a refusal with: whether the nearest name was meant, if one is near.
-pub fn did_you_mean<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(given, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"))
-}
+pub use crate::keys::{did_you_mean, nearest};
 
 /// What a key known from another tool, or from another table, is called in the table `path` (empty: the scene).
 pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {

@@ -5,7 +5,7 @@ use super::section::Section;
 use super::suggest;
 use crate::double::Double;
 use crate::earth::{self, Day};
-use crate::geometry::{Attitude, Nav, Vector};
+use crate::geometry::{Attitude, Axes, Nav, Vector};
 use crate::motion::{self, Context, Force, Motion, Push};
 use crate::quantity::{self, Kind, Sign};
 use crate::time::SimTime;
@@ -18,14 +18,27 @@ fn plain(triple: [Double; 3]) -> DVec3 {
 
 pub(super) struct Start {
     pub attitude: Attitude,
+    /// Whether the scene says so.
+    given: bool,
     pub resolved: toml::Table,
 }
 
 /// `[start]`: three angles or a quaternion.
 pub(super) fn start(top: &Section<'_>) -> Start {
     let section = top.table("start");
+    let given = section.has("attitude") || section.has("quaternion");
     let attitude = section.attitude(Some("[0, 0, 0] deg")).unwrap_or(Attitude::IDENTITY);
-    Start { attitude, resolved: section.finish() }
+    Start { attitude, given, resolved: section.finish() }
+}
+
+impl Start {
+    /// Where the scene left it open and its first motion begins.
+    fn settle(&mut self, attitude: Attitude, axes: Axes) {
+        let q = axes.attitude_out(attitude);
+        self.attitude = attitude;
+        self.resolved.remove("attitude");
+        self.resolved.insert("quaternion".into(), vec![q.w, q.x, q.y, q.z].into());
+    }
 }
 
 pub(super) struct Earth {
@@ -133,12 +146,20 @@ pub(super) struct Motions {
     pub resolved: Vec<toml::Value>,
 }
 
-/// Every `[[motion]]`, read by the declaration of its kind; the first finds the vehicle at `start`.
-pub(super) fn motions(top: &Section<'_>, gravity: f64, mut start: Attitude) -> Motions {
+/// Every `[[motion]]`, read by the declaration of its kind; the first finds the vehicle at `start`, or settles that
+/// where the scene leaves it open.
+pub(super) fn motions(top: &Section<'_>, gravity: f64, start: &mut Start) -> Motions {
     let (mut motions, mut resolved) = (Vec::new(), Vec::new());
+    let mut here = start.attitude;
     for (index, section) in top.tables("motion").into_iter().enumerate() {
-        if let Some((duration, motion)) = motion(&section, gravity, index, start) {
-            start = motion.at(start, duration.exact_seconds()).attitude;
+        let anywhere = index == 0 && !start.given;
+        if let Some((duration, motion)) = motion(&section, gravity, index, here, anywhere) {
+            if let Some(begins) = motion.begins().filter(|_| anywhere) {
+                here = begins;
+                start.settle(begins, section.axes());
+            }
+            motion.warnings().iter().for_each(|warning| section.reader.warn(warning.clone()));
+            here = motion.at(here, duration.exact_seconds()).attitude;
             motions.push((duration, motion));
         }
         resolved.push(section.finish().into());
@@ -151,6 +172,7 @@ fn motion(
     gravity: f64,
     index: usize,
     start: Attitude,
+    anywhere: bool,
 ) -> Option<(SimTime, Box<dyn Motion>)> {
     let names = motion::KINDS.map(|kind| kind.name);
     let Some(name) = section.text("kind", None) else {
@@ -171,10 +193,14 @@ fn motion(
         return None;
     };
     section.call(format!("a `{name}` motion"));
-    if !section.has("duration") {
+    if !section.has("duration") && !kind.has_length {
         section.lacks("a motion needs a duration, such as duration = \"5 s\"".into());
     }
     let duration = section.time("duration", None, Sign::Positive);
+    if duration.is_none() {
+        // Its place among the keys, so that the scene as resolved is the same however it was found.
+        section.resolve("duration", "");
+    }
     let values = section.values(kind.keys, false);
     if section.unread(kind.keys, &values) {
         return None;
@@ -184,13 +210,21 @@ fn motion(
     let context = Context {
         duration: in_time,
         start,
+        anywhere,
         seed: section.seed(),
         index,
         gravity,
-        body_sign: section.axes().body_sign(),
+        axes: section.axes(),
     };
     match (kind.build)(&values, &context) {
-        Ok(motion) => Some((duration?, motion)),
+        Ok(motion) => {
+            let own = || {
+                let length = motion.length().filter(|_| !section.has("duration"))?;
+                section.resolve("duration", length.to_string());
+                Some(length)
+            };
+            Some((duration.or_else(own)?, motion))
+        }
         Err(error) => {
             section.mistake(error.key, error.message);
             None

@@ -1,0 +1,188 @@
+//! A recorded log of attitude or angular rate, played again.
+//!
+//! An attitude log is met exactly at its rows, with angular rate and angular acceleration continuous between
+//! ([`attitude`]); a rate log is interpolated smoothly and integrated ([`rate`]). Rows that are missing or jump are
+//! [reported](survey). The log is in the scene's axes. Its first row is the motion's start; after its last the
+//! vehicle holds.
+
+mod attitude;
+mod columns;
+mod grid;
+mod log;
+mod rate;
+mod survey;
+
+use super::{Built, Context, MotionKind};
+use crate::geometry::{Attitude, Axes, Euler};
+use crate::keys::{Columns, Key, KeyError, Takes, Values};
+use crate::quantity::Kind;
+use attitude::AttitudeLog;
+use columns::Known;
+use glam::{DQuat, DVec3};
+use log::Log;
+use rate::RateLog;
+
+pub(super) static KIND: MotionKind = MotionKind {
+    name: "replay",
+    about: "plays a recorded log of attitude or angular rate, in the scene's axes",
+    keys: &[
+        Key {
+            name: "file",
+            takes: Takes::File,
+            default: None,
+            about: "the log: columns under a header, separated by commas, semicolons, tabs or spaces; lines with # are comments",
+        },
+        Key {
+            name: "time",
+            takes: Takes::Columns(Columns { count: 1, kind: Some(Kind::TIME) }),
+            default: None,
+            about: "its column of time (without this key t_ns or t_s)",
+        },
+        Key {
+            name: "quaternion",
+            takes: Takes::Columns(Columns { count: 4, kind: None }),
+            default: None,
+            about: "its columns of attitude, w first, body to nav (without this key qw, qx, qy, qz)",
+        },
+        Key {
+            name: "euler",
+            takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGLE) }),
+            default: None,
+            about: "instead: roll, pitch, yaw (without this key roll_rad, pitch_rad, yaw_rad)",
+        },
+        Key {
+            name: "angular_rate",
+            takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGULAR_RATE) }),
+            default: None,
+            about: "instead: about body x, y, z (without this key wx_rad_s, wy_rad_s, wz_rad_s or x_rad_s, y_rad_s, z_rad_s)",
+        },
+        Key {
+            name: "align",
+            takes: Takes::Word(&["none", "start"]),
+            default: Some("none"),
+            about: "an attitude log as logged, or turned as a whole to begin where the motion finds the vehicle",
+        },
+    ],
+    has_length: true,
+    build,
+};
+
+const TIME: Known = Known { key: "time", sets: &[(&["t_ns"], 1e-9), (&["t_s"], 1.0)] };
+const QUATERNION: Known = Known { key: "quaternion", sets: &[(&["qw", "qx", "qy", "qz"], 1.0)] };
+const EULER: Known = Known { key: "euler", sets: &[(&["roll_rad", "pitch_rad", "yaw_rad"], 1.0)] };
+const ANGULAR_RATE: Known = Known {
+    key: "angular_rate",
+    sets: &[(&["wx_rad_s", "wy_rad_s", "wz_rad_s"], 1.0), (&["x_rad_s", "y_rad_s", "z_rad_s"], 1.0)],
+};
+
+/// An attitude log that begins nearer than this (rad) to where the vehicle is begins there.
+const AGREE: f64 = 1e-6;
+
+fn build(values: &Values, context: &Context) -> Built {
+    let Some(file) = values.file("file") else {
+        return Err(KeyError::new("kind", "`replay` needs a `file`, such as file = \"log.csv\""));
+    };
+    let header = columns::header(file)?;
+    let time = header.time(values, &TIME)?;
+    let group = header.one_of(values, &[&QUATERNION, &EULER, &ANGULAR_RATE])?;
+    match group.key {
+        "quaternion" => attitudes(Log::read(&header, &time, &group)?, context, values, quaternion),
+        "euler" => attitudes(Log::read(&header, &time, &group)?, context, values, euler),
+        _ => rates(Log::read(&header, &time, &group)?, context),
+    }
+}
+
+/// From a row to a quaternion of any length.
+type ToQuat<const N: usize> = fn([f64; N]) -> DQuat;
+
+fn quaternion([w, x, y, z]: [f64; 4]) -> DQuat {
+    DQuat::from_xyzw(x, y, z, w)
+}
+
+fn euler([roll, pitch, yaw]: [f64; 3]) -> DQuat {
+    Euler { roll, pitch, yaw }.to_quat()
+}
+
+fn attitudes<const N: usize>(log: Log<N>, context: &Context, values: &Values, to_quat: ToQuat<N>) -> Built {
+    let mut warnings = Vec::new();
+    let mut knots = unit_quaternions(&log, context.axes, to_quat, &mut warnings)?;
+    let first = Attitude::from_quat(knots[0]);
+    let aligned = values.word("align") == Some("start");
+    let apart = first.angle_to(context.start);
+    if aligned {
+        let turn = context.start.q * first.q.conjugate();
+        knots.iter_mut().for_each(|q| *q = (turn * *q).normalize());
+    } else if !context.anywhere && apart > AGREE {
+        let q = context.axes.attitude_out(first);
+        return Err(KeyError::new(
+            "file",
+            format!(
+                "{} begins {:.6} deg from where the motion finds the vehicle: begin with [start] quaternion = [{}, {}, {}, {}], or add align = \"start\" to turn the log",
+                log.place(0),
+                apart.to_degrees(),
+                q.w,
+                q.x,
+                q.y,
+                q.z
+            ),
+        ));
+    }
+    // Of the two signs of an attitude that which is continuous in time, from the vehicle's on.
+    let mut last = if context.anywhere && !aligned { knots[0] } else { context.start.q };
+    for q in &mut knots {
+        *q = if q.dot(last) < 0.0 { -*q } else { *q };
+        last = *q;
+    }
+    warnings.extend(survey::gaps(&log));
+    warnings.extend(survey::attitude_jumps(&log, &knots));
+    Ok(Box::new(AttitudeLog::new(log.grid, &knots, !aligned, warnings)))
+}
+
+/// Every row's attitude in the program's own axes, of length 1.
+fn unit_quaternions<const N: usize>(
+    log: &Log<N>,
+    axes: Axes,
+    to_quat: ToQuat<N>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<DQuat>, KeyError> {
+    let (mut null, mut odd) = (Vec::new(), Vec::new());
+    let mut knots = Vec::with_capacity(log.rows.len());
+    for (row, values) in log.rows.iter().enumerate() {
+        let q = to_quat(*values);
+        let length = q.length();
+        if length < 1e-6 {
+            null.push(format!("{}: a quaternion of length {length} is no attitude", log.place(row)));
+        } else if (length - 1.0).abs() > 1e-3 {
+            odd.push(format!(
+                "{}: the quaternion has the length {length:.4}, not 1; its direction is taken",
+                log.place(row)
+            ));
+        }
+        knots.push(axes.attitude_in(q / length).q.normalize());
+    }
+    warnings.extend(survey::some_of(odd));
+    match log::first_of(null) {
+        Some(message) => Err(KeyError::new("file", message)),
+        None => Ok(knots),
+    }
+}
+
+fn rates(log: Log<3>, context: &Context) -> Built {
+    let rates: Vec<DVec3> =
+        log.rows.iter().map(|row| context.axes.body_in(DVec3::from_array(*row)).v).collect();
+    let mut warnings: Vec<_> = survey::gaps(&log).collect();
+    warnings.extend(survey::rate_jumps(&log, &rates));
+    let place = log.place(0);
+    match RateLog::new(log.grid, &rates, warnings) {
+        Some(motion) => Ok(Box::new(motion)),
+        None => Err(KeyError::new(
+            "file",
+            format!(
+                "{place} and on: this log is longer or turns faster than can be solved exactly (four million steps): cut it into several"
+            ),
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests;

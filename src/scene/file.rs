@@ -1,0 +1,74 @@
+//! Files that a scene names: read where they are, and what a copy of the scene needs beside it.
+
+use super::section::Section;
+use crate::keys::Text;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// A file that the scene as resolved names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attached {
+    /// What the scene as resolved calls it.
+    pub name: String,
+    path: PathBuf,
+    stamp: Stamp,
+}
+
+/// Length in bytes and time of change.
+type Stamp = (u64, Option<SystemTime>);
+
+impl Attached {
+    /// Where it was read.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What stands in it, as when the scene was read.
+    ///
+    /// # Errors
+    /// The system's reason, or that it has changed since.
+    pub fn contents(&self) -> io::Result<Vec<u8>> {
+        if stamp(&self.path)? != self.stamp {
+            return Err(io::Error::other("it has changed since the scene was read; start again"));
+        }
+        fs::read(&self.path)
+    }
+}
+
+fn stamp(path: &Path) -> io::Result<Stamp> {
+    let metadata = fs::metadata(path)?;
+    Ok((metadata.len(), metadata.modified().ok()))
+}
+
+impl Section<'_> {
+    /// A text file by its path, relative to the scene's folder, or to the current one where `--set` names it. The
+    /// scene as resolved calls it after its table, `motion-0.csv`, and expects it in its own folder.
+    pub(super) fn file(&self, key: &'static str) -> Option<Text> {
+        let path = self.text(key, None)?;
+        let in_scene = self.place(key).position().is_some();
+        let path = if in_scene { self.reader.folder.join(path) } else { PathBuf::from(path) };
+        let name = path.display().to_string();
+        let read = stamp(&path).and_then(|stamp| Ok((stamp, fs::read(&path)?)));
+        let (stamp, bytes) = match read {
+            Ok(read) => read,
+            Err(error) => {
+                self.mistake(key, format!("cannot read {name}: {error}"));
+                return None;
+            }
+        };
+        let contents = String::from_utf8(bytes)
+            .map_err(|error| {
+                let line =
+                    error.as_bytes()[..error.utf8_error().valid_up_to()].split(|b| *b == b'\n').count();
+                self.mistake(key, format!("{name}:{line} is no text (UTF-8)"));
+            })
+            .ok()?;
+        let extension = path.extension().map_or(String::new(), |text| format!(".{}", text.to_string_lossy()));
+        let attached = Attached { name: self.path.replace('.', "-") + &extension, path, stamp };
+        self.resolve(key, attached.name.clone());
+        self.reader.attached.borrow_mut().push(attached);
+        Some(Text { name, contents })
+    }
+}
