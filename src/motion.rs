@@ -13,6 +13,7 @@ pub mod method;
 mod random;
 mod rock;
 mod rotate;
+mod stepped;
 mod trajectory;
 mod waypoints;
 
