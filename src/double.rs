@@ -27,6 +27,8 @@ impl Double {
     pub const ONE: Double = Double { hi: 1.0, lo: 0.0 };
     /// π.
     pub const PI: Double = Double { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
+    /// π/2, a quarter turn in radians.
+    pub const FRAC_PI_2: Double = Double { hi: std::f64::consts::FRAC_PI_2, lo: 6.123_233_995_736_766e-17 };
     /// 2π, one turn in radians.
     pub const TAU: Double = Double { hi: std::f64::consts::TAU, lo: 2.449_293_598_294_706_4e-16 };
     /// π/180, one degree in radians.
@@ -102,15 +104,21 @@ impl Double {
 
     /// Sine and cosine of this angle in radians, each to about one unit in the last place.
     ///
-    /// The angle is first brought into ±π with a 107-bit 2π, so that the digits of `lo` count in
+    /// The angle is first brought into ±π/4 with a 107-bit π/2, so that the digits of `lo` count in
     /// full; beyond 2³¹ rad, where that would no longer be better, by the addition theorem over
     /// the two halves. Not finite in, NaN out.
     pub fn sin_cos(self) -> (f64, f64) {
+        /// Added and taken away, it leaves a number below 2⁵¹ rounded to a whole one.
+        const ROUND: f64 = 6_755_399_441_055_744.0;
         if self.hi.abs() < 2_147_483_648.0 {
-            let turns = libm::rint(self.hi / Self::TAU.hi);
-            let angle = self - Self::TAU * turns;
-            let (sin, cos) = (libm::sin(angle.hi), libm::cos(angle.hi));
-            return (sin + cos * angle.lo, cos - sin * angle.lo);
+            let quarters = (self.hi * std::f64::consts::FRAC_2_PI + ROUND) - ROUND;
+            let (sin, cos) = eighth_turn(self - Self::FRAC_PI_2 * quarters);
+            return match quarters as i64 & 3 {
+                0 => (sin, cos),
+                1 => (cos, -sin),
+                2 => (-sin, -cos),
+                _ => (-cos, sin),
+            };
         }
         let (sin, cos) = (libm::sin(self.hi), libm::cos(self.hi));
         let (sin_lo, cos_lo) = (libm::sin(self.lo), libm::cos(self.lo));
@@ -121,6 +129,41 @@ impl Double {
     const fn renormalised(sum: f64, error: f64) -> Self {
         if sum.is_finite() { Self { hi: sum, lo: error } } else { Self { hi: sum, lo: 0.0 } }
     }
+}
+
+/// Sine and cosine of an angle within ±π/4 and a little, to less than a unit in the last place.
+///
+/// The minimax polynomials of fdlibm (`k_sin.c` and `k_cos.c`, Sun Microsystems 1993). Here the argument comes with
+/// its tail already, and one reduction serves both: twice as fast as two calls that each reduce again.
+fn eighth_turn(angle: Double) -> (f64, f64) {
+    const S: [f64; 6] = [
+        -1.666_666_666_666_663_2e-1,
+        8.333_333_333_322_49e-3,
+        -1.984_126_982_985_795e-4,
+        2.755_731_370_707_006_8e-6,
+        -2.505_076_025_340_686_3e-8,
+        1.589_690_995_211_55e-10,
+    ];
+    const C: [f64; 6] = [
+        4.166_666_666_666_66e-2,
+        -1.388_888_888_887_411e-3,
+        2.480_158_728_947_673e-5,
+        -2.755_731_435_139_066_3e-7,
+        2.087_572_321_298_175e-9,
+        -1.135_964_755_778_819_5e-11,
+    ];
+    let Double { hi: x, lo: tail } = angle;
+    let square = x * x;
+    let fourth = square * square;
+    let cube = square * x;
+    let r = S[1] + square * (S[2] + square * S[3]) + square * fourth * (S[4] + square * S[5]);
+    let sin = x - ((square * (0.5 * tail - cube * r) - tail) - cube * S[0]);
+    let r = square * (C[0] + square * (C[1] + square * C[2]))
+        + fourth * fourth * (C[3] + square * (C[4] + square * C[5]));
+    let half = 0.5 * square;
+    let whole = 1.0 - half;
+    let cos = whole + (((1.0 - whole) - half) + (square * r - x * tail));
+    (sin, cos)
 }
 
 /// `a + b` exactly, for |a| ≥ |b| or a = 0 (Dekker's fast two-sum).
@@ -145,6 +188,9 @@ impl From<i64> for Double {
     /// Exact.
     fn from(value: i64) -> Self {
         let hi = value as f64;
+        if value.unsigned_abs() <= 1 << 53 {
+            return Self { hi, lo: 0.0 };
+        }
         Self { hi, lo: (i128::from(value) - hi as i128) as f64 }
     }
 }

@@ -14,6 +14,7 @@ mod random;
 mod replay;
 mod rock;
 mod rotate;
+mod stepped;
 mod trajectory;
 mod waypoints;
 

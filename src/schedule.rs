@@ -3,7 +3,7 @@
 use crate::time::{Rate, SimTime};
 
 /// A sensor's ticks: its rate and when tick 0 is due.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ticks {
     /// Output data rate.
     pub rate: Rate,
@@ -23,14 +23,30 @@ pub struct Due {
 /// Iterates over the distinct ticks in `[0, end)` of at most 32 sensors.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    sensors: Vec<(Ticks, u64, SimTime)>,
+    groups: Vec<Group>,
     end: SimTime,
+}
+
+/// Sensors with the same ticks.
+#[derive(Clone, Debug)]
+struct Group {
+    ticks: Ticks,
+    sensors: u32,
+    k: u64,
+    next: SimTime,
 }
 
 impl Schedule {
     /// Of these sensors, up to but not including `end`.
     pub fn new(sensors: impl IntoIterator<Item = Ticks>, end: SimTime) -> Schedule {
-        Schedule { sensors: sensors.into_iter().map(|ticks| (ticks, 0, ticks.phase)).collect(), end }
+        let mut groups: Vec<Group> = Vec::new();
+        for (i, ticks) in sensors.into_iter().enumerate() {
+            match groups.iter_mut().find(|group| group.ticks == ticks) {
+                Some(group) => group.sensors |= 1 << i,
+                None => groups.push(Group { ticks, sensors: 1 << i, k: 0, next: ticks.phase }),
+            }
+        }
+        Schedule { groups, end }
     }
 }
 
@@ -38,14 +54,12 @@ impl Iterator for Schedule {
     type Item = Due;
 
     fn next(&mut self) -> Option<Due> {
-        let t = self.sensors.iter().map(|&(_, _, next)| next).min().filter(|&t| t < self.end)?;
+        let t = self.groups.iter().map(|group| group.next).min().filter(|&t| t < self.end)?;
         let mut sensors = 0;
-        for (i, (ticks, k, next)) in self.sensors.iter_mut().enumerate() {
-            if *next == t {
-                sensors |= 1 << i;
-                *k += 1;
-                *next = ticks.phase + ticks.rate.tick(*k);
-            }
+        for group in self.groups.iter_mut().filter(|group| group.next == t) {
+            sensors |= group.sensors;
+            group.k += 1;
+            group.next = group.ticks.phase + group.ticks.rate.tick(group.k);
         }
         Some(Due { t, sensors })
     }

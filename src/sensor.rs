@@ -234,6 +234,13 @@ impl Block {
             column.push(value);
         }
     }
+
+    /// Adds samples by their error-free readings.
+    pub fn extend(&mut self, truth: impl Iterator<Item = Vector<Body>> + Clone) {
+        for (axis, column) in self.truth.iter_mut().enumerate() {
+            column.extend(truth.clone().map(|truth| truth.v[axis]));
+        }
+    }
 }
 
 /// One error of one sensor, applied to its samples in order; what it does never depends on where blocks begin.

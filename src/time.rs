@@ -64,6 +64,8 @@ impl fmt::Display for SimTime {
 pub struct Rate {
     numerator: u64,
     denominator: u64,
+    /// Nanoseconds from tick to tick where that is a whole number, else 0.
+    whole_ns: u64,
 }
 
 impl Rate {
@@ -73,13 +75,22 @@ impl Rate {
             return None;
         }
         let divisor = gcd(numerator, denominator);
-        Some(Rate { numerator: numerator / divisor, denominator: denominator / divisor })
+        Some(Rate::reduced(numerator / divisor, denominator / divisor))
     }
 
     /// A whole number of hertz, above zero.
     pub const fn hz(hertz: u32) -> Rate {
         assert!(hertz > 0);
-        Rate { numerator: hertz as u64, denominator: 1 }
+        Rate::reduced(hertz as u64, 1)
+    }
+
+    const fn reduced(numerator: u64, denominator: u64) -> Rate {
+        // Beyond the range of numbers there is the general way.
+        let whole_ns = match denominator.checked_mul(NANOS as u64) {
+            Some(ns) if ns.is_multiple_of(numerator) => ns / numerator,
+            _ => 0,
+        };
+        Rate { numerator, denominator, whole_ns }
     }
 
     /// `numerator / denominator` times this one; `None` where that is zero or beyond the range of numbers.
@@ -99,6 +110,10 @@ impl Rate {
 
     /// When tick `k` is due after tick 0: `round(k * denominator * 10⁹ / numerator)` ns, halves up.
     pub fn tick(self, k: u64) -> SimTime {
+        if self.whole_ns > 0 {
+            let ns = k.saturating_mul(self.whole_ns);
+            return SimTime(i64::try_from(ns).unwrap_or(i64::MAX));
+        }
         let (p, q) = (i128::from(self.numerator), i128::from(self.denominator));
         let scaled = i128::from(k) * q * i128::from(NANOS);
         let ns = (2 * scaled + p).div_euclid(2 * p);

@@ -1,5 +1,6 @@
 //! The whole truth of a scene: segments one after another, forces over them, gravity and field.
 
+use super::stepped::Stepped;
 use super::{Kinematics, Motion, rest};
 use crate::double::Double;
 use crate::geometry::{Attitude, Body, Nav, Rotation, Vector};
@@ -138,6 +139,28 @@ impl Trajectory {
         self.in_segment(segment, t, (t - segment.start).exact_seconds())
     }
 
+    /// The truth at each of `times`, appended to `truth`; the quickest if they are in order.
+    pub fn fill(&self, times: impl Iterator<Item = SimTime>, truth: &mut Vec<Truth>) {
+        let mut segment = self.segment(SimTime::ZERO);
+        let steps =
+            |segment: &Segment| segment.motion.constant_rate().map(|rate| (rate, Stepped::new(rate.v)));
+        let mut stepped = steps(segment);
+        truth.extend(times.map(|t| {
+            if t < segment.start || t >= segment.end {
+                segment = self.segment(t);
+                stepped = steps(segment);
+            }
+            let since = t - segment.start;
+            match &mut stepped {
+                Some((rate, stepped)) => {
+                    let attitude = stepped.at(&*segment.motion, segment.attitude, since);
+                    self.felt(t, Kinematics { attitude, rate: *rate, acceleration: Vector::ZERO })
+                }
+                None => self.in_segment(segment, t, since.exact_seconds()),
+            }
+        }));
+    }
+
     fn segment(&self, t: SimTime) -> &Segment {
         let index = self.segments.partition_point(|segment| segment.end <= t);
         &self.segments[index.min(self.segments.len() - 1)]
@@ -145,7 +168,11 @@ impl Trajectory {
 
     /// `since` is `t` in seconds from the segment's start, where that is finer than a nanosecond.
     fn in_segment(&self, segment: &Segment, t: SimTime, since: Double) -> Truth {
-        let Kinematics { attitude, rate, acceleration } = segment.motion.at(segment.attitude, since);
+        self.felt(t, segment.motion.at(segment.attitude, since))
+    }
+
+    /// What there is to feel of that.
+    fn felt(&self, t: SimTime, Kinematics { attitude, rate, acceleration }: Kinematics) -> Truth {
         let to_body = attitude.inverse();
         let mut force = to_body.apply(acceleration - self.gravity);
         self.pushes(t, to_body).for_each(|push| force += push);

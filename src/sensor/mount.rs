@@ -66,24 +66,40 @@ impl Mount {
         Vector::from_vec(self.to_chip.transpose() * v.v)
     }
 
-    /// Changes columns of body components on the chip's axes: `change` gets the sample's index and components.
-    pub(super) fn on_chip(
-        self,
-        columns: &mut [Vec<f64>; 3],
-        mut change: impl FnMut(usize, [f64; 3]) -> [f64; 3],
-    ) {
-        let [x, y, z] = columns;
-        let same_axes = self.to_chip == DMat3::IDENTITY;
-        for (i, ((x, y), z)) in x.iter_mut().zip(y).zip(z).enumerate() {
-            let body = DVec3::new(*x, *y, *z);
-            let out = if same_axes {
-                DVec3::from_array(change(i, body.to_array()))
-            } else {
-                let chip = change(i, (self.to_chip * body).to_array());
-                self.to_chip.transpose() * DVec3::from_array(chip)
-            };
-            (*x, *y, *z) = (out.x, out.y, out.z);
+    /// Changes columns of body components on the chip's axes: `change` gets one column a chip axis.
+    pub(super) fn on_chip(self, columns: &mut [Vec<f64>; 3], mut change: impl FnMut(&mut [f64])) {
+        if let Some(axes) = self.right_angles() {
+            for (body, sign) in axes {
+                let column = &mut columns[body][..];
+                let turn = |column: &mut [f64]| column.iter_mut().for_each(|x| *x *= sign);
+                if sign < 0.0 {
+                    turn(column);
+                }
+                change(column);
+                if sign < 0.0 {
+                    turn(column);
+                }
+            }
+        } else {
+            turn(self.to_chip, columns);
+            columns.iter_mut().for_each(|column| change(column));
+            turn(self.to_chip.transpose(), columns);
         }
+    }
+
+    /// For a right-angle mount, which body axis each chip axis lies on, and its sign.
+    fn right_angles(self) -> Option<[(usize, f64); 3]> {
+        let rows = self.to_chip.transpose();
+        let along = |row: DVec3| (0..3).find(|&i| row[i].abs() == 1.0).map(|i| (i, row[i]));
+        Some([along(rows.x_axis)?, along(rows.y_axis)?, along(rows.z_axis)?])
+    }
+}
+
+/// Every sample of three columns multiplied by the matrix.
+fn turn(by: DMat3, columns: &mut [Vec<f64>; 3]) {
+    let [x, y, z] = columns;
+    for ((x, y), z) in x.iter_mut().zip(y).zip(z) {
+        (*x, *y, *z) = (by * DVec3::new(*x, *y, *z)).into();
     }
 }
 

@@ -47,10 +47,15 @@ impl Term for Clip {
     fn apply(&mut self, block: &mut Block) {
         let (low, high) = (self.low, self.high);
         let clipped = &mut block.clipped;
-        self.mount.on_chip(&mut block.reading, |i, v| {
-            let inside = v.map(|x| x.clamp(low, high));
-            clipped[i] |= inside != v;
-            inside
+        self.mount.on_chip(&mut block.reading, |column| {
+            // Almost always nothing is beyond, and that is seen without a branch a sample.
+            if column.iter().fold(false, |beyond, &x| beyond | (x < low) | (x > high)) {
+                for (x, clipped) in column.iter_mut().zip(&mut *clipped) {
+                    let inside = x.clamp(low, high);
+                    *clipped |= inside != *x;
+                    *x = inside;
+                }
+            }
         });
     }
 }
