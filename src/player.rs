@@ -68,10 +68,15 @@ impl<'a> Player<'a> {
     /// Plays `plan` from 0 up to, not including, `end`; after the scene's motions the vehicle holds.
     /// `block` is how many distinct ticks are computed at a time (at least 1).
     pub fn new(plan: &'a Plan, end: SimTime, block: usize) -> Player<'a> {
+        Player::without(plan, end, block, &[])
+    }
+
+    /// The same without the error terms called so.
+    pub fn without(plan: &'a Plan, end: SimTime, block: usize, left_out: &[&str]) -> Player<'a> {
         let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
         let channels = plan.sensors.iter().map(|sensor| Channel {
             plan: sensor.clone(),
-            sensor: plan.build(sensor),
+            sensor: plan.build_without(sensor, left_out),
             block: Block::default(),
             done: 0,
             last: None,

@@ -135,7 +135,16 @@ impl Plan {
     /// # Panics
     /// Never for a sensor of this plan: its terms were built once when the scene was read.
     pub fn build(&self, sensor: &SensorPlan) -> Sensor {
-        Sensor::new(sensor, self.seed).unwrap_or_else(|error| unreachable!("checked when read: {error:?}"))
+        self.build_without(sensor, &[])
+    }
+
+    /// The same without the error terms called so.
+    ///
+    /// # Panics
+    /// As [`Plan::build`].
+    pub fn build_without(&self, sensor: &SensorPlan, left_out: &[&str]) -> Sensor {
+        Sensor::without(sensor, self.seed, left_out)
+            .unwrap_or_else(|error| unreachable!("checked when read: {error:?}"))
     }
 }
 

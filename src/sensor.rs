@@ -247,6 +247,11 @@ impl Block {
 pub trait Term: Send {
     /// Changes the bias or the reading of every sample of the block.
     fn apply(&mut self, block: &mut Block);
+
+    /// Normal numbers that it draws for each sample.
+    fn normals(&self) -> usize {
+        0
+    }
 }
 
 /// Where in the chain a term acts.
@@ -332,6 +337,11 @@ impl Sensor {
     /// The names of its terms, in order.
     pub fn terms(&self) -> &[&'static str] {
         &self.names
+    }
+
+    /// Normal numbers that its terms draw for each sample.
+    pub fn normals(&self) -> usize {
+        self.biases.iter().chain(&self.readings).map(|term| term.normals()).sum()
     }
 
     /// Fills bias, reading and clipped of a block whose truth is given; blocks come in order of time.

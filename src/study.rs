@@ -1,9 +1,11 @@
 //! Every method against every motion: how accurate, at what cost, and where it fails.
 //!
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
-//! [`stability`] tries what breaks methods. Both give rows for a table; time comes in as an argument.
+//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost. All give rows for a table; time
+//! comes in as an argument.
 
 pub mod accuracy;
+pub mod cost;
 mod inputs;
 pub mod motions;
 mod parallel;

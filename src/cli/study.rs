@@ -10,7 +10,7 @@ use crate::motion::Trajectory;
 use crate::scene::{Plan, builtin, nearest};
 use crate::study::motions::{self, Case, OfTrajectory};
 use crate::study::stability::Effort;
-use crate::study::{accuracy, all_cores, stability};
+use crate::study::{accuracy, all_cores, cost, stability};
 use clap::ValueEnum;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -18,14 +18,14 @@ use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// accuracy, stability or all, which is the default; or the scene at once
+    /// accuracy, stability, cost or all, which is the default; or the scene at once
     study: Option<String>,
-    /// A TOML file or the name of a built-in scene: its motion joins the built-in ones
+    /// A TOML file or the name of a built-in scene: its motion joins the built-in ones, and its samples are what costs
     scene: Option<String>,
     /// Write the numbers as CSV and the charts as SVG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Motions A to D at 100 Hz and 1 kHz alone, and a tenth of the steps of drift
+    /// Motions A to D at 100 Hz and 1 kHz alone, a tenth of the steps of drift, and few rounds of costs
     #[arg(long)]
     quick: bool,
     /// Print every row as JSON on standard output
@@ -42,7 +42,9 @@ enum What {
     Accuracy,
     /// What breaks methods, and which it breaks
     Stability,
-    /// Both
+    /// What a scene's samples cost as its error terms are added
+    Cost,
+    /// Each of them
     All,
 }
 
@@ -55,7 +57,12 @@ struct Results {
     accuracy: Option<Vec<accuracy::Row>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stability: Option<Vec<stability::Row>>,
+    #[serde(skip_serializing_if = "Option::is_none", flatten)]
+    cost: Option<cost::Cost>,
 }
+
+/// The scene whose cost is studied where none is given.
+const COST_SCENE: &str = "mpu-9250";
 
 pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let (what, scene) = asked(arguments)?;
@@ -64,7 +71,11 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
         dataset::may_write(dir, arguments.force)?;
     }
     let cases = cases(plan.as_ref(), arguments.quick)?;
-    let results = run(what, arguments.quick, &cases);
+    let costly = match &plan {
+        Some(plan) => plan,
+        None => &Plan::load(COST_SCENE, &[])?,
+    };
+    let results = run(what, arguments.quick, &cases, costly);
     if let Some(dir) = &arguments.out {
         dataset::put_all(dir, arguments.force, &files(&results, &cases)?)?;
         eprintln!("{}: written", dir.display());
@@ -127,7 +138,7 @@ fn asked(arguments: &Arguments) -> Result<(What, Option<&str>), Refusal> {
     }))
 }
 
-fn run(what: What, quick: bool, cases: &[Case]) -> Results {
+fn run(what: What, quick: bool, cases: &[Case], costly: &Plan) -> Results {
     let wanted = |study| what == What::All || what == study;
     let threads = all_cores();
     Results {
@@ -147,6 +158,11 @@ fn run(what: What, quick: bool, cases: &[Case]) -> Results {
             bar.clear();
             rows
         }),
+        cost: wanted(What::Cost).then(|| {
+            let effort = if quick { cost::Effort::QUICK } else { cost::Effort::FULL };
+            let start = Instant::now();
+            cost::run(costly, effort, &|| start.elapsed())
+        }),
     }
 }
 
@@ -160,6 +176,10 @@ fn files(results: &Results, cases: &[Case]) -> Result<Vec<(&'static str, Vec<u8>
     if let Some(rows) = &results.stability {
         files.push(("stability.csv", csv(rows)?));
         files.push(("stability.svg", charts::stability(rows).into_bytes()));
+    }
+    if let Some(cost) = &results.cost {
+        files.push(("cost.csv", csv(&cost.terms)?));
+        files.push(("cost.svg", charts::cost(cost).into_bytes()));
     }
     Ok(files)
 }
@@ -176,7 +196,8 @@ fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, Refusal> {
 fn text(results: &Results, cases: &[Case]) -> String {
     let accuracy = results.accuracy.as_ref().map(|rows| tables::accuracy(rows, cases));
     let stability = results.stability.as_ref().map(|rows| tables::stability(rows));
-    accuracy.into_iter().chain(stability).collect::<Vec<_>>().join("\n")
+    let cost = results.cost.as_ref().map(tables::cost);
+    accuracy.into_iter().chain(stability).chain(cost).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]
@@ -207,6 +228,7 @@ mod tests {
             quick: true,
             accuracy: Some(vec![row("paper", 100, Some(1e-3)), row("coning-2", 100, None)]),
             stability: Some(vec![failed]),
+            cost: None,
         }
     }
 

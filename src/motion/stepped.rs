@@ -48,13 +48,14 @@ impl Stepped {
     }
 }
 
-/// `exp` of a small half rotation vector: the series of sin(x)/x and cos(x) in x².
+/// `exp` of a small half rotation vector: the series of sin(x)/x and cos(x) in x², to x¹⁰ and x¹².
 fn small(half: DVec3) -> DQuat {
+    const SINC: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
+    const COS: [f64; 6] =
+        [-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
     let y = half.length_squared();
-    let sinc = 1.0 - y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * (1.0 - y / 72.0 * (1.0 - y / 110.0))));
-    let cos = 1.0
-        - y / 2.0
-            * (1.0 - y / 12.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * (1.0 - y / 90.0 * (1.0 - y / 132.0)))));
+    let sinc = 1.0 + y * (SINC[0] + y * (SINC[1] + y * (SINC[2] + y * (SINC[3] + y * SINC[4]))));
+    let cos = 1.0 + y * (COS[0] + y * (COS[1] + y * (COS[2] + y * (COS[3] + y * (COS[4] + y * COS[5])))));
     let b = half * sinc;
     DQuat::from_xyzw(b.x, b.y, b.z, cos)
 }

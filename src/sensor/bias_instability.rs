@@ -88,4 +88,8 @@ impl Term for GaussMarkov {
             self.bias[axis] = state;
         }
     }
+
+    fn normals(&self) -> usize {
+        self.step.to_array().iter().filter(|&&step| step != 0.0).count()
+    }
 }

@@ -65,4 +65,8 @@ impl Term for Walk {
             self.bias[axis] = walk;
         }
     }
+
+    fn normals(&self) -> usize {
+        self.step.to_array().iter().filter(|&&step| step != 0.0).count()
+    }
 }

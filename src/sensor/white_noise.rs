@@ -98,4 +98,8 @@ impl Term for WhiteNoise {
             }
         }
     }
+
+    fn normals(&self) -> usize {
+        self.sigma.to_array().iter().filter(|&&sigma| sigma != 0.0).count()
+    }
 }

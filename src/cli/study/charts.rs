@@ -5,6 +5,7 @@ use crate::motion::method::METHODS;
 use crate::report::chart::{self, Cell, Grid, LogLog};
 use crate::report::number;
 use crate::study::accuracy;
+use crate::study::cost::Cost;
 use crate::study::motions::Case;
 use crate::study::stability::{self, CASES, Verdict};
 
@@ -76,4 +77,25 @@ fn verdict(verdict: Verdict) -> chart::Verdict {
         Verdict::Degraded => chart::Verdict::Degraded,
         Verdict::Fails => chart::Verdict::Fails,
     }
+}
+
+/// A bar a term, and the floor.
+pub fn cost(cost: &Cost) -> String {
+    let mut before = 0.0;
+    let bars = cost.terms.iter().map(|term| {
+        let added = term.ns_per_sample - std::mem::replace(&mut before, term.ns_per_sample);
+        chart::Bar { name: term.term.replace('_', " "), value: term.ns_per_sample, added }
+    });
+    chart::bars(&chart::Bars {
+        title: format!("What a nine-axis sample of {} costs as error terms are added", cost.scene),
+        subtitle: format!(
+            "one thread, in memory: {} million a second, {} times the cost of its {} normal numbers alone",
+            number(cost.nine_axis_samples_per_s / 1e6),
+            number(cost.ratio),
+            number(cost.normals_per_sample)
+        ),
+        unit: "ns".into(),
+        bars: bars.collect(),
+        line: Some(("its normal numbers alone".into(), 1e9 / cost.floor_samples_per_s)),
+    })
 }

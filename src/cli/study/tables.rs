@@ -3,6 +3,7 @@
 use crate::motion::method::{Input, METHODS, find};
 use crate::report::{number, table};
 use crate::study::accuracy;
+use crate::study::cost::Cost;
 use crate::study::motions::Case;
 use crate::study::stability::{self, CASES, Verdict};
 
@@ -123,4 +124,22 @@ fn sign(verdict: Verdict) -> &'static str {
         Verdict::Degraded => "~",
         Verdict::Fails => "X",
     }
+}
+/// What a sample costs with the terms up to each.
+pub fn cost(cost: &Cost) -> String {
+    let mut before = 0.0;
+    let rows = cost.terms.iter().map(|term| {
+        let added = term.ns_per_sample - std::mem::replace(&mut before, term.ns_per_sample);
+        vec![term.term.to_string(), number(added), number(term.ns_per_sample)]
+    });
+    let millions = |rate: f64| number(rate / 1e6);
+    format!(
+        "{}\n{} million nine-axis samples/s of {}, one thread; its {} normal numbers alone: {} million; ratio {}\n",
+        table(&["with", "ns more", "ns a sample"], &rows.collect::<Vec<_>>()),
+        millions(cost.nine_axis_samples_per_s),
+        cost.scene,
+        number(cost.normals_per_sample),
+        millions(cost.floor_samples_per_s),
+        number(cost.ratio)
+    )
 }

@@ -13,12 +13,14 @@
 //! | `loglog` | small multiples of cost against error, with the front of the cheapest |
 //! | `grid` | a table of verdicts |
 //! | `curves` | measured curves with their bands, and theory |
+//! | `bars` | what adds up, a bar a step |
 //!
 //! The drawing is `plotters`' SVG backend, in quarters of a pixel: it reads no system font, and
 //! leaves every coordinate to us. `kuva` 0.6, tried on the same pictures, has no table of verdicts
 //! and no names at the ends of lines, and let points and tick labels leave their panel.
 
 mod axis;
+mod bars;
 mod canvas;
 mod curve;
 mod grid;
@@ -30,6 +32,7 @@ mod series;
 #[cfg(test)]
 mod tests;
 
+pub use bars::{Bar, Bars, bars};
 pub use curve::{Curve, CurveKind, Curves, curves};
 pub use grid::{Cell, Grid, Row, Verdict, grid};
 pub use histogram::{Distribution, Histogram, Marker, Shape, histogram};
