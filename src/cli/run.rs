@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
 }
 
 fn demo_output() -> Output {
-    Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None } })
+    Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None, baud: None } })
 }
 
 /// What cannot go together, before anything is opened.
