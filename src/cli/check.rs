@@ -1,10 +1,11 @@
 //! `ratetable check`: the plan of a scene, before anything runs.
 
+use super::budget::Budget;
 use super::{Refusal, Verdict, options, say};
 use crate::report::{number, table};
-use crate::scene::{Output, Plan};
+use crate::scene::Plan;
 use crate::sensor::{SensorKind, SensorPlan, lsb, white_noise};
-use crate::wire::{self, Setup};
+use crate::wire;
 use serde_json::{Value, json};
 
 #[derive(Debug, clap::Args)]
@@ -61,8 +62,9 @@ fn terms(plan: &Plan, sensor: &SensorPlan) -> Vec<&'static str> {
     plan.build(sensor).terms().to_vec()
 }
 
-fn setup<'a>(plan: &'a Plan, output: &Output) -> Setup<'a> {
-    Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire }
+/// What each output needs, in real time.
+fn budgets(plan: &Plan) -> Vec<Budget> {
+    Budget::all(plan, &plan.outputs, 1.0)
 }
 
 /// What a user should think about before running the scene.
@@ -85,16 +87,9 @@ fn warnings(plan: &Plan) -> Vec<String> {
     }
     for output in &plan.outputs {
         warnings.extend(wire::warnings(output.to.protocol, &plan.sensors));
-        let (bytes, _) = wire::load(output.to.protocol, &setup(plan, output));
-        if let Some(baud) = output.to.address.baud().filter(|baud| bytes * 10.0 > f64::from(*baud)) {
-            warnings.push(format!(
-                "{} needs {} bytes/s, but {baud} baud carries {} (8N1)",
-                output.to,
-                number(bytes),
-                baud / 10
-            ));
-        }
     }
+    let over = budgets(plan).into_iter().filter(|budget| !budget.fits());
+    warnings.extend(over.map(|budget| budget.to_string()));
     warnings
 }
 
@@ -140,14 +135,9 @@ fn text(plan: &Plan) -> String {
     text += &table(&heading, &rows.collect::<Vec<_>>());
     text += "\nOne-sided density (datasheets) = √2 · random walk (Allan deviation at 1 s; Kalibr's noise density).\n";
     if !plan.outputs.is_empty() {
-        let rows = plan.outputs.iter().map(|output| {
-            let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
-            let share = output
-                .to
-                .address
-                .baud()
-                .map_or("-".into(), |baud| format!("{:.0} %", 1000.0 * bytes / f64::from(baud)));
-            vec![output.to.to_string(), number(packets), number(bytes), share]
+        let rows = budgets(plan).into_iter().map(|budget| {
+            let share = budget.share().map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
+            vec![budget.to.to_string(), number(budget.packets_per_s), number(budget.bytes_per_s), share]
         });
         text += &format!(
             "\n{}",
@@ -178,10 +168,18 @@ fn json(plan: &Plan) -> Value {
             "terms": terms(plan, sensor),
         })
     });
-    let links = plan.outputs.iter().map(|output| {
-        let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
-        let capacity = output.to.address.baud().map(|baud| f64::from(baud) / 10.0);
-        json!({ "to": output.to.to_string(), "packets_per_s": packets, "bytes_per_s": bytes, "capacity_bytes_per_s": capacity })
+    let links = plan.outputs.iter().zip(budgets(plan)).map(|(output, budget)| {
+        json!({
+            "to": budget.to.to_string(),
+            "packets_per_s": budget.packets_per_s,
+            "bytes_per_s": budget.bytes_per_s,
+            "capacity_bytes_per_s": budget.capacity,
+            "utilisation": budget.share(),
+            "fits": budget.fits(),
+            "ways_out": budget.ways_out,
+            "overload": output.overload.name(),
+            "force": output.force,
+        })
     });
     json!({
         "version": env!("CARGO_PKG_VERSION"),

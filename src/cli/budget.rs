@@ -1,0 +1,188 @@
+//! The link budget: bytes a second that an output needs against what its baud rate carries.
+
+use crate::link::{STANDARD_BAUDS, bytes_per_second};
+use crate::report::number;
+use crate::scene::{Destination, Output, Overload, Plan};
+use crate::sensor::SensorPlan;
+use crate::time::Rate;
+use crate::wire::{self, Layout, Protocol, Setup};
+use std::fmt;
+
+/// What an output asks of its link, and what the link has.
+///
+/// Eight data bits, no parity and one stop bit take ten bits a byte with their start bit, so a baud rate carries a
+/// tenth of it in bytes a second. What is needed is found by encoding ten seconds of the scene's own ticks.
+#[derive(Clone, Debug)]
+pub struct Budget {
+    /// The output as it was asked for.
+    pub to: Destination,
+    /// Packets a second.
+    pub packets_per_s: f64,
+    /// Their bytes.
+    pub bytes_per_s: f64,
+    /// Bytes a second that the baud rate carries, where there is one.
+    pub capacity: Option<f64>,
+    /// What would fit, a sentence each with its number; empty where all fits.
+    pub ways_out: Vec<String>,
+}
+
+impl Budget {
+    /// Of one output of a plan that is played at `speed` scene seconds a second.
+    pub fn of(plan: &Plan, output: &Output, speed: f64) -> Budget {
+        let load = |sensors: &[SensorPlan], protocol: Protocol, options: wire::Options| {
+            let (bytes, packets) =
+                wire::load(protocol, &Setup { sensors, axes: plan.axes, day: plan.day, options });
+            (bytes * speed, packets * speed)
+        };
+        let (bytes_per_s, packets_per_s) = load(&plan.sensors, output.to.protocol, output.wire);
+        let capacity = output.to.address.baud().map(bytes_per_second);
+        let mut budget =
+            Budget { to: output.to.clone(), packets_per_s, bytes_per_s, capacity, ways_out: Vec::new() };
+        if let Some(capacity) = capacity.filter(|_| !budget.fits()) {
+            let ways = Ways { plan, output, capacity, needed: bytes_per_s, load: &load };
+            budget.ways_out = ways.all();
+        }
+        budget
+    }
+
+    /// Of every output.
+    pub fn all(plan: &Plan, outputs: &[Output], speed: f64) -> Vec<Budget> {
+        outputs.iter().map(|output| Budget::of(plan, output, speed)).collect()
+    }
+
+    /// The needed part of what the link carries.
+    pub fn share(&self) -> Option<f64> {
+        self.capacity.map(|capacity| self.bytes_per_s / capacity)
+    }
+
+    /// Whether the link carries it.
+    pub fn fits(&self) -> bool {
+        self.share().is_none_or(|share| share <= 1.0)
+    }
+}
+
+impl Budget {
+    /// What it needs and what the link carries, in a line.
+    pub fn arithmetic(&self) -> String {
+        let (packets, bytes) = (number(self.packets_per_s), number(self.bytes_per_s));
+        let needs = format!("{} needs {bytes} bytes/s ({packets} packets/s)", self.to);
+        match (self.to.address.baud(), self.capacity, self.share()) {
+            (Some(baud), Some(capacity), Some(share)) => format!(
+                "{needs}, and {baud} baud carries {} (8N1: {baud}/10), so that is {:.0} % of it",
+                number(capacity),
+                100.0 * share
+            ),
+            _ => needs,
+        }
+    }
+}
+
+impl fmt::Display for Budget {
+    /// The arithmetic, then each way out in a line of its own.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.arithmetic())?;
+        self.ways_out.iter().try_for_each(|way| write!(f, "\n  - {way}"))
+    }
+}
+
+/// Looks for what would fit.
+struct Ways<'a, L> {
+    plan: &'a Plan,
+    output: &'a Output,
+    capacity: f64,
+    needed: f64,
+    /// Bytes and packets a second of these sensors so sent.
+    load: &'a L,
+}
+
+impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
+    fn all(&self) -> Vec<String> {
+        let mut ways: Vec<_> = self.lower_rate().into_iter().collect();
+        ways.extend(self.other_packets());
+        ways.push(self.higher_baud());
+        if self.output.overload != Overload::Stretch {
+            let times = self.needed / self.capacity;
+            ways.push(format!(
+                "lose nothing and take {} times as long: overload = \"stretch\" in [[output]]",
+                number(times)
+            ));
+        }
+        ways.push(
+            "start in spite of it, and lose what does not fit: --force, or force = true in [[output]]".into(),
+        );
+        ways
+    }
+
+    /// The highest whole rate in Hz to which the faster sensors can be slowed down.
+    fn lower_rate(&self) -> Option<String> {
+        let at = |hz: u32| {
+            let mut sensors = self.plan.sensors.clone();
+            for sensor in sensors.iter_mut().filter(|sensor| sensor.rate.as_hz() > f64::from(hz)) {
+                sensor.rate = Rate::hz(hz);
+            }
+            (self.load)(&sensors, self.output.to.protocol, self.output.wire).0
+        };
+        let fastest = self.plan.sensors.iter().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+        let (mut fits, mut not) = (0, fastest.ceil() as u32);
+        while not - fits > 1 {
+            let hz = fits + (not - fits) / 2;
+            *(if at(hz) <= self.capacity { &mut fits } else { &mut not }) = hz;
+        }
+        let slowed: Vec<_> =
+            self.plan.sensors.iter().filter(|sensor| sensor.rate.as_hz() > f64::from(fits)).collect();
+        let sets: Vec<_> =
+            slowed.iter().map(|sensor| format!("--set {}.rate='{fits} Hz'", sensor.kind)).collect();
+        (fits > 0).then(|| format!("a lower rate: {} needs {} bytes/s", sets.join(" "), number(at(fits))))
+    }
+
+    /// Each other layout and protocol that fits.
+    fn other_packets(&self) -> Vec<String> {
+        let here = self.output.to.protocol;
+        let mut ways = Vec::new();
+        if here == Protocol::Mpu {
+            for (layout, name) in [(Layout::Separate, "separate"), (Layout::Burst, "burst")] {
+                let options = wire::Options { layout: Some(layout) };
+                if wire::check(here, &options, &self.plan.sensors).is_ok()
+                    && let Some(bytes) = self.fitting(here, options)
+                {
+                    ways.push(format!("other packets: layout = \"{name}\" needs {bytes} bytes/s"));
+                }
+            }
+        }
+        for protocol in Protocol::ALL.into_iter().filter(|protocol| *protocol != here) {
+            if let Some(bytes) = self.fitting(protocol, wire::Options::default()) {
+                let to = Destination { protocol, address: self.output.to.address.clone() };
+                ways.push(format!("other packets: {to} needs {bytes} bytes/s"));
+            }
+        }
+        ways
+    }
+
+    fn fitting(&self, protocol: Protocol, options: wire::Options) -> Option<String> {
+        let (bytes, _) = (self.load)(&self.plan.sensors, protocol, options);
+        (bytes <= self.capacity).then(|| number(bytes))
+    }
+
+    /// The next standard speed that carries it.
+    fn higher_baud(&self) -> String {
+        let next = STANDARD_BAUDS.iter().find(|baud| bytes_per_second(**baud) >= self.needed);
+        match next {
+            Some(&baud) => {
+                let to = Destination {
+                    protocol: self.output.to.protocol,
+                    address: self.output.to.address.clone().at_baud(baud),
+                };
+                let carried = bytes_per_second(baud);
+                format!(
+                    "a higher baud rate: {to} carries {} bytes/s, {:.0} % of it needed",
+                    number(carried),
+                    100.0 * self.needed / carried
+                )
+            }
+            None => format!(
+                "no standard baud rate carries it: it takes {} baud",
+                number((self.needed * 10.0).ceil())
+            ),
+        }
+    }
+}
