@@ -135,32 +135,34 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
         (fits > 0).then(|| format!("a lower rate: {} needs {} bytes/s", sets.join(" "), number(at(fits))))
     }
 
-    /// Each other layout and protocol that fits.
+    /// Each other layout and protocol that fits, or that none does.
     fn other_packets(&self) -> Vec<String> {
         let here = self.output.to.protocol;
-        let mut ways = Vec::new();
-        if here == Protocol::Mpu {
-            for (layout, name) in [(Layout::Separate, "separate"), (Layout::Burst, "burst")] {
-                let options = wire::Options { layout: Some(layout) };
-                if wire::check(here, &options, &self.plan.sensors).is_ok()
-                    && let Some(bytes) = self.fitting(here, options)
-                {
-                    ways.push(format!("other packets: layout = \"{name}\" needs {bytes} bytes/s"));
-                }
+        let mut others = Vec::new();
+        let layouts = [(Layout::Separate, "separate"), (Layout::Burst, "burst")];
+        for (layout, name) in layouts.into_iter().filter(|_| here == Protocol::Mpu) {
+            let options = wire::Options { layout: Some(layout) };
+            if wire::check(here, &options, &self.plan.sensors).is_ok() {
+                others.push((format!("layout = \"{name}\""), self.bytes(here, options)));
             }
         }
         for protocol in Protocol::ALL.into_iter().filter(|protocol| *protocol != here) {
-            if let Some(bytes) = self.fitting(protocol, wire::Options::default()) {
-                let to = Destination { protocol, address: self.output.to.address.clone() };
-                ways.push(format!("other packets: {to} needs {bytes} bytes/s"));
-            }
+            others.push((protocol.name().into(), self.bytes(protocol, wire::Options::default())));
         }
-        ways
+        // What the output sends already is no other.
+        others.retain(|(_, bytes)| *bytes != self.needed);
+        others.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let say = |(what, bytes): &(String, f64)| format!("{what} needs {} bytes/s", number(*bytes));
+        let fitting: Vec<_> = others.iter().filter(|(_, bytes)| *bytes <= self.capacity).map(say).collect();
+        if !fitting.is_empty() {
+            return fitting.iter().map(|what| format!("other packets: {what}")).collect();
+        }
+        let none: Vec<_> = others.iter().map(say).collect();
+        vec![format!("no other packets: {}", none.join(", "))]
     }
 
-    fn fitting(&self, protocol: Protocol, options: wire::Options) -> Option<String> {
-        let (bytes, _) = (self.load)(&self.plan.sensors, protocol, options);
-        (bytes <= self.capacity).then(|| number(bytes))
+    fn bytes(&self, protocol: Protocol, options: wire::Options) -> f64 {
+        (self.load)(&self.plan.sensors, protocol, options).0
     }
 
     /// The next standard speed that carries it.

@@ -131,17 +131,19 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
 
 /// Every output that its link does not carry is refused, unless its user wants it so.
 fn afford(plan: &Plan, outputs: &[Output], speed: f64, force: bool) -> Result<(), Refusal> {
-    let budgets = Budget::all(plan, outputs, speed);
-    let over = || outputs.iter().zip(&budgets).filter(|(_, budget)| !budget.fits());
-    for (output, budget) in over().filter(|(output, _)| force || !refuses(output)) {
-        let but =
-            if output.overload == Overload::Stretch { "scene time is stretched" } else { "the rest is lost" };
-        eprintln!("warning: {}; {but}", budget.arithmetic());
+    let mut refused = Vec::new();
+    for output in outputs.iter().filter(|output| output.to.address.baud().is_some()) {
+        let budget = Budget::of(plan, output, speed);
+        match (budget.fits(), force || !refuses(output)) {
+            (true, _) => {}
+            (false, false) => refused.push(budget.to_string()),
+            (false, true) => {
+                let stretched = output.overload == Overload::Stretch;
+                let but = if stretched { "scene time is stretched" } else { "the rest is lost" };
+                eprintln!("warning: {}; {but}", budget.arithmetic());
+            }
+        }
     }
-    let refused: Vec<_> = over()
-        .filter(|(output, _)| !force && refuses(output))
-        .map(|(_, budget)| budget.to_string())
-        .collect();
     if refused.is_empty() { Ok(()) } else { Err(Refusal(refused.join("\n"))) }
 }
 
