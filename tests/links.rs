@@ -182,6 +182,27 @@ fn a_pty_with_a_baud_rate_loses_exactly_what_a_uart_would_not_carry() {
     }
 }
 
+#[test]
+fn a_stretched_scene_takes_the_time_its_line_needs_and_loses_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let table = format!("[[output]]\nto = \"mpu@pty:{},115200\"\noverload = \"stretch\"\n", there("imu"));
+    let scene = scene(folder.path(), &format!("{SCENE}{table}"));
+    let child = start(&["run", &scene, "--json"]);
+    let received = read_all(open_soon(Path::new(&there("imu"))));
+    let (report, code, text) = report(child);
+    check_identity(&report);
+    assert_eq!(code, Some(0), "{text}");
+    let to = format!("mpu@file:{}", there("alone"));
+    assert!(run(&["run", &scene, "--to", &to, "--speed", "max"]).status.success());
+    assert!(received == std::fs::read(there("alone")).unwrap(), "the same bytes, later");
+    // All but what the buffer (and the packet that it cut) held at the end has left at 11 520 bytes/s.
+    let least = (received.len() as f64 - 4096.0 - 232.0) / 11_520.0 - 1.0;
+    let stretched = report["stretched_s"].as_f64().unwrap();
+    assert!(stretched > least && least > 0.8, "{stretched} s");
+    assert!(text.contains("scene time stood still for"), "{text}");
+}
+
 /// A port of somebody else's, published at `path`: its master.
 fn plug_in(path: &Path) -> OwnedFd {
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();

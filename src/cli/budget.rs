@@ -1,6 +1,6 @@
 //! The link budget: bytes a second that an output needs against what its baud rate carries.
 
-use crate::link::{STANDARD_BAUDS, bytes_per_second};
+use crate::link::{Address, STANDARD_BAUDS, bytes_per_second};
 use crate::report::number;
 use crate::scene::{Destination, Output, Overload, Plan};
 use crate::sensor::SensorPlan;
@@ -165,6 +165,16 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
         (self.load)(&self.plan.sensors, protocol, options).0
     }
 
+    /// What a baud rate means to a device that is USB all the way.
+    fn usb(&self) -> &'static str {
+        match &self.output.to.address {
+            Address::Serial { path, .. } if path.to_string_lossy().contains("ttyACM") => {
+                " (a USB device of this kind usually takes any, and runs at the speed of USB)"
+            }
+            _ => "",
+        }
+    }
+
     /// The next standard speed that carries it.
     fn higher_baud(&self) -> String {
         let next = STANDARD_BAUDS.iter().find(|baud| bytes_per_second(**baud) >= self.needed);
@@ -174,9 +184,9 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
                     protocol: self.output.to.protocol,
                     address: self.output.to.address.clone().at_baud(baud),
                 };
-                let carried = bytes_per_second(baud);
+                let (carried, usb) = (bytes_per_second(baud), self.usb());
                 format!(
-                    "a higher baud rate: {to} carries {} bytes/s, {:.0} % of it needed",
+                    "a higher baud rate: {to} carries {} bytes/s, {:.0} % of it needed{usb}",
                     number(carried),
                     100.0 * self.needed / carried
                 )

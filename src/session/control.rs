@@ -1,7 +1,7 @@
 //! The control side of a run: opens links, waits for peers, starts the threads, listens, ends cleanly.
 
 use super::answers::{Ear, Heard};
-use super::links::{Account, LOOK, Watch};
+use super::links::{Account, LOOK, Lookout};
 use super::pacer::{Left, Pacer};
 use super::producer::{self, Made};
 use super::tally::{self, LinkTally};
@@ -64,7 +64,7 @@ struct Run {
     absence: Duration,
     /// The link whose reader has left for good.
     left: Option<usize>,
-    watch: Watch,
+    lookout: Lookout,
 }
 
 /// What ended a wait.
@@ -123,10 +123,10 @@ impl Run {
         let heard = Heard { damaged: vec![0; job.outputs.len()], ..Heard::default() };
         let shared = Shared::default();
         shared.start_ns.store(-1, Ordering::Relaxed);
-        let watch = Watch::new(job.outputs.len());
+        let lookout = Lookout::new(job.outputs.len());
         Run {
             job,
-            watch,
+            lookout,
             shared: Arc::new(shared),
             clock: WallClock::start(Pacing::default()),
             heard: Rc::new(RefCell::new(heard)),
@@ -273,7 +273,7 @@ impl Run {
         loop {
             tokio::select! {
                 _ = &mut *done => break,
-                _ = looks.tick() => self.watch.look(links, |notice| on(Event::Notice(notice))),
+                _ = looks.tick() => self.lookout.look(links, |notice| on(Event::Notice(notice))),
                 _ = ticks.tick() => {
                     let progress = self.progress();
                     if waits && let Some(link) = absence.look(progress.packets, links, self.absence) {
@@ -292,7 +292,7 @@ impl Run {
                 }
             }
         }
-        self.watch.look(links, |notice| on(Event::Notice(notice)));
+        self.lookout.look(links, |notice| on(Event::Notice(notice)));
         on(Event::Progress(self.progress()));
     }
 
@@ -389,8 +389,8 @@ impl Run {
         left: &Left,
     ) -> Vec<LinkReport> {
         let damaged = &self.heard.borrow().damaged;
-        let (outputs, watch, abandoned) = (&self.job.outputs, &self.watch, self.left);
-        Account { outputs, names, tallies, gone, made, left, watch, damaged, abandoned }.reports()
+        let (outputs, lookout, abandoned) = (&self.job.outputs, &self.lookout, self.left);
+        Account { outputs, names, tallies, gone, made, left, lookout, damaged, abandoned }.reports()
     }
 
     fn never_started(&self, names: Vec<String>) -> Outcome {

@@ -14,16 +14,16 @@ pub(super) const LOOK: Duration = Duration::from_millis(20);
 
 /// What is seen of the links, now and then: nothing that the pacing thread would have to wait for.
 #[derive(Debug)]
-pub(super) struct Watch {
+pub(super) struct Lookout {
     /// The fullest that each one's buffers were, bytes.
     fullest: Vec<Option<usize>>,
     /// Whether each is a port that was pulled out.
     out: Vec<bool>,
 }
 
-impl Watch {
-    pub(super) fn new(links: usize) -> Watch {
-        Watch { fullest: vec![None; links], out: vec![false; links] }
+impl Lookout {
+    pub(super) fn new(links: usize) -> Lookout {
+        Lookout { fullest: vec![None; links], out: vec![false; links] }
     }
 
     /// Looks at every link and tells of ports that came or went.
@@ -50,7 +50,7 @@ pub(super) struct Account<'a> {
     pub gone: &'a [Option<ErrorKind>],
     pub made: &'a Made,
     pub left: &'a Left,
-    pub watch: &'a Watch,
+    pub lookout: &'a Lookout,
     /// Damaged answers.
     pub damaged: &'a [u64],
     /// The link whose reader left for good.
@@ -77,10 +77,10 @@ impl Account<'_> {
             dropped: tally.dropped,
             queued: self.left.packets[i],
             overload: output.overload.name().into(),
-            queue_bytes: self.watch.fullest[i].map(|bytes| bytes as u64),
+            queue_bytes: self.lookout.fullest[i].map(|bytes| bytes as u64),
             utilisation: baud.zip(tally.bytes_per_s()).map(|(baud, bytes)| bytes / bytes_per_second(baud)),
             paced_baud: baud.filter(|_| matches!(output.to.address, Address::Pty { .. })),
-            gaps: (gaps.count > 0).then(|| Gaps {
+            gaps: (gaps.count > 0).then_some(Gaps {
                 count: gaps.count,
                 total_s: gaps.total_ns as f64 * 1e-9,
                 dropped: gaps.dropped,
@@ -94,7 +94,7 @@ impl Account<'_> {
     /// Why it takes nothing any more.
     fn broken(&self, i: usize) -> Option<String> {
         match self.gone[i] {
-            _ if self.watch.out[i] => Some("unplugged, and not back".into()),
+            _ if self.lookout.out[i] => Some("unplugged, and not back".into()),
             _ if self.abandoned == Some(i) => Some("the reader left".into()),
             gone => gone.map(|kind| kind.to_string()),
         }
