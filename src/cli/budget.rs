@@ -59,9 +59,7 @@ impl Budget {
     pub fn fits(&self) -> bool {
         self.share().is_none_or(|share| share <= 1.0)
     }
-}
 
-impl Budget {
     /// What it needs and what the link carries, in a line.
     pub fn arithmetic(&self) -> String {
         let (packets, bytes) = (number(self.packets_per_s), number(self.bytes_per_s));
@@ -196,5 +194,59 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
                 number((self.needed * 10.0).ceil())
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn budget(scene: &str, output: &str, speed: f64) -> Budget {
+        let text = format!("duration = \"1 s\"\n{scene}[[output]]\n{output}");
+        let plan = Plan::parse(&text, "test", "test", &[]).unwrap_or_else(|error| panic!("{error}"));
+        Budget::of(&plan, &plan.outputs[0], speed)
+    }
+
+    const BOTH: &str = "[gyro]\nrate = \"1 kHz\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";
+
+    #[test]
+    fn what_is_needed_is_what_packet_lengths_give_by_hand() {
+        // 24 bytes an imu packet, 18 a mag, 20 a config a second.
+        let by_hand = 1000.0 * 24.0 + 100.0 * 18.0 + 20.0;
+        for (to, speed, capacity) in [
+            ("to = \"mpu@/dev/ttyUSB0,460800\"\n", 1.0, Some(46_080.0)),
+            ("to = \"mpu@pty,258200\"\n", 1.0, Some(by_hand)),
+            ("to = \"mpu@/dev/ttyUSB0\"\n", 3.0, Some(92_160.0)),
+            ("to = \"mpu@pty\"\n", 100.0, None),
+            ("to = \"mpu@pty,9600\"\npace = false\n", 1.0, None),
+        ] {
+            let budget = budget(BOTH, to, speed);
+            assert!((budget.bytes_per_s - speed * by_hand).abs() < 1e-6, "{to}: {}", budget.bytes_per_s);
+            assert_eq!((budget.capacity, budget.fits(), budget.ways_out.len()), (capacity, true, 0), "{to}");
+        }
+        assert!(!budget(BOTH, "to = \"mpu@pty,258190\"\n", 1.0).fits(), "a byte a second too few");
+    }
+
+    #[test]
+    fn each_way_out_has_its_number_and_only_those_that_are_ways_are_named() {
+        let ways = |scene: &str, output: &str| budget(scene, output, 1.0).ways_out.join("\n");
+        // Packets of their own are shorter when the accelerometer is slow.
+        let slow = "[gyro]\nrate = \"1 kHz\"\n[accel]\nrate = \"10 Hz\"\n";
+        let burst = ways(slow, "to = \"mpu@pty,200000\"\nlayout = \"burst\"\n");
+        assert!(burst.contains("other packets: layout = \"separate\" needs 16180 bytes/s"), "{burst}");
+        assert!(burst.contains("--set gyro.rate='832 Hz' needs 19988 bytes/s"), "{burst}");
+        assert!(!burst.contains("accel.rate"), "what is slow enough stays: {burst}");
+        assert!(burst.contains("mpu@pty,460800"), "{burst}");
+        let usb = ways(BOTH, "to = \"mpu@/dev/ttyACM0,57600\"\n");
+        assert!(usb.contains("runs at the speed of USB"), "{usb}");
+        let fast = "[gyro]\nrate = \"100 kHz\"\n";
+        let none = ways(fast, "to = \"csv@/dev/ttyUSB0\"\noverload = \"stretch\"\n");
+        assert!(
+            none.contains("no standard baud rate carries it: it takes 8") && !none.contains("stretch"),
+            "{none}"
+        );
+        // Once a second: no rate is low enough for a line of ten bytes a second, and none is offered.
+        let hopeless = ways("[gyro]\nrate = \"1 Hz\"\n", "to = \"mpu@pty,100\"\n");
+        assert!(!hopeless.contains("lower rate"), "{hopeless}");
     }
 }

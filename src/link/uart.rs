@@ -2,7 +2,7 @@
 //! them.
 //!
 //! ```text
-//! pacing thread ─▶ transmit buffer, 4096 bytes ─▶ FIFO, 16 or 64 bytes ─▶ line: 10 bits a byte ─▶ reader
+//! pacing thread ─▶ transmit buffer, 4096 bytes ─▶ FIFO, up to 64 bytes ─▶ line: 10 bits a byte ─▶ reader
 //! ```
 //!
 //! The buffer is as large as a serial driver's (Linux: a page). Once it is full the sender is told so, and whoever
@@ -30,10 +30,15 @@ const PRIORITY: i32 = 45;
 /// A thread that nobody wakes looks up this often.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Bytes that are handed over together: the FIFO of a 16550, and from 230 400 baud up that of a 16750, which is
-/// also a packet of full-speed USB, so that there is never much more than a wake-up in a quarter of a millisecond.
+/// Bytes that are handed over together: none waits for another at the speeds of an 8250; then the FIFO of a 16550;
+/// and from 230 400 baud up that of a 16750, which is also a packet of full-speed USB, so that there is never much
+/// more than a wake-up in a quarter of a millisecond.
 fn fifo(baud: u32) -> usize {
-    if baud < 230_400 { 16 } else { 64 }
+    match baud {
+        ..1200 => 1,
+        ..230_400 => 16,
+        _ => 64,
+    }
 }
 
 /// What the pacing thread, the line and the control side know of one another.
@@ -287,7 +292,7 @@ mod tests {
 
     #[test]
     fn each_fifo_of_bytes_comes_when_its_last_stop_bit_is_over() {
-        for (baud, fifo) in [(9600, 16), (115_200, 16), (921_600, 64), (1_234_567, 64)] {
+        for (baud, fifo) in [(300, 1), (9600, 16), (115_200, 16), (921_600, 64), (1_234_567, 64)] {
             let (woken, bytes) = (5_000, 1000);
             let mut shifter = line(baud, woken, bytes);
             let (mut seen, mut ends) = (Vec::new(), Vec::new());
@@ -402,10 +407,8 @@ mod tests {
             taken += 64;
         }
         assert!((BUFFER..=BUFFER + 2 * 64).contains(&taken), "{taken}");
-        assert!(
-            link.queued().is_some_and(|queued| (BUFFER - 64..=BUFFER).contains(&queued)),
-            "{:?}",
-            link.queued()
-        );
+        // A byte is on the line, and the last packet may have been cut.
+        let queued = link.queued().unwrap();
+        assert!((BUFFER - 1..=BUFFER + 64).contains(&queued), "{queued}");
     }
 }

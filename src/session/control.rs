@@ -331,7 +331,7 @@ impl Run {
         }
         let (mut tallies, gone, stretched) = (pacer.tallies, pacer.gone, pacer.stretched);
         let now = self.clock.now();
-        tallies.iter_mut().for_each(|tally| tally.gap.end(now));
+        tallies.iter_mut().for_each(|tally| tally.gaps.end(now));
         drop(pacer.senders);
         if !self.heard.borrow().estimates.is_empty() {
             tokio::time::sleep(LAST_ANSWERS).await;

@@ -66,7 +66,7 @@ impl Account<'_> {
     fn report(&self, i: usize) -> LinkReport {
         let (output, tally) = (&self.outputs[i], &self.tallies[i]);
         let baud = output.to.address.baud();
-        let gaps = &tally.gap;
+        let gaps = &tally.gaps;
         LinkReport {
             to: output.to.to_string(),
             name: self.names[i].clone(),

@@ -250,7 +250,7 @@ fn a_port_that_is_unplugged_gets_the_present_when_it_is_back_and_the_gap_is_told
             readers[0].far.unplug((200..450).contains(&ms) || (700..800).contains(&ms));
             readers[0].read();
         });
-        let (lost, gap) = (ran.check(0), &ran.tallies[0].gap);
+        let (lost, gap) = (ran.check(0), &ran.tallies[0].gaps);
         if policy == Overload::Stretch {
             // The scene waits for it: the second time is 250 ms of scene earlier.
             assert_eq!((lost.len(), gap.count, gap.dropped, ran.stretched), (0, 2, 0, 350 * MS));
@@ -357,7 +357,7 @@ fn no_policy_allocates_in_the_pacing_thread() {
         let world = World { now: 0, readers, act };
         let mut pacer = Pacer::new(world, consumer, vec![sender], [policy], Speed::Times(1.0));
         let counted = allocation_counter::measure(|| pacer.run(0, &shared));
-        assert!(pacer.tallies[0].packets >= 600 && pacer.tallies[0].gap.count == 1);
+        assert!(pacer.tallies[0].packets >= 600 && pacer.tallies[0].gaps.count == 1);
         assert_eq!(counted.count_total, 0, "{policy:?}");
     }
 }

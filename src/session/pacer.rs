@@ -141,7 +141,7 @@ impl<C: Clock> Pacer<C> {
                 shared.packets.fetch_add(1, Ordering::Relaxed);
                 self.forget_replaced(output, packet, shared);
             }
-            Sent::Away => tally.gap.begin(before),
+            Sent::Away => tally.gaps.begin(before),
             Sent::Gone(kind) => self.gone[output] = Some(kind),
             Sent::Full => {}
         }

@@ -71,7 +71,7 @@ pub(super) struct LinkTally {
     pub bytes: u64,
     pub dropped: u64,
     pub sensors: [SensorTally; 3],
-    pub gap: Gaps,
+    pub gaps: Gaps,
     /// When its first and its last packet were sent, ns, and the bytes of the last.
     first: i64,
     last: i64,
@@ -85,7 +85,7 @@ impl LinkTally {
             bytes: 0,
             dropped: 0,
             sensors: [0; 3].map(|_| SensorTally::new()),
-            gap: Gaps::default(),
+            gaps: Gaps::default(),
             first: 0,
             last: 0,
             last_bytes: 0,
@@ -94,7 +94,7 @@ impl LinkTally {
 
     /// Counts a packet as sent at `now`, `late` ns after it was due, in a call of `write` ns.
     pub(super) fn sent(&mut self, packet: &Packet, now: i64, late: i64, write: i64) {
-        self.gap.end(now);
+        self.gaps.end(now);
         if self.packets == 0 {
             self.first = now;
         }
@@ -110,7 +110,7 @@ impl LinkTally {
     /// Counts a packet as dropped; how many samples that is.
     pub(super) fn dropped(&mut self, packet: &Packet) -> u64 {
         self.dropped += 1;
-        self.gap.dropped += u64::from(self.gap.since.is_some());
+        self.gaps.dropped += u64::from(self.gaps.since.is_some());
         let sensors = self.sensors.iter_mut().enumerate();
         let lost =
             sensors.filter(|(i, _)| packet.carries >> i & 1 == 1).map(|(_, sensor)| sensor.dropped += 1);
