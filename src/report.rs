@@ -175,4 +175,6 @@ pub struct Gaps {
     pub total_s: f64,
     /// Packets dropped meanwhile.
     pub dropped: u64,
+    /// Samples in them.
+    pub samples: u64,
 }

@@ -23,11 +23,12 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     }
     for (link, gaps) in report.links.iter().filter_map(|link| Some((link, link.gaps?))) {
         text += &format!(
-            "{} was unplugged {}, {} s in all: {} packets dropped\n",
+            "{} was unplugged {}, {} s in all: {} packets with {} samples dropped\n",
             link.name,
             if gaps.count == 1 { "once".into() } else { format!("{} times", gaps.count) },
             number(gaps.total_s),
-            gaps.dropped
+            gaps.dropped,
+            gaps.samples
         );
     }
     if let Some(score) = &report.attitude {

@@ -36,7 +36,7 @@ const LOOK: Duration = Duration::from_millis(50);
 fn fifo(baud: u32) -> usize {
     match baud {
         ..1200 => 1,
-        ..230_400 => 16,
+        1200..230_400 => 16,
         _ => 64,
     }
 }

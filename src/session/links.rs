@@ -84,6 +84,7 @@ impl Account<'_> {
                 count: gaps.count,
                 total_s: gaps.total_ns as f64 * 1e-9,
                 dropped: gaps.dropped,
+                samples: gaps.samples,
             }),
             crc_errors: self.damaged[i],
             lost_seq: None,

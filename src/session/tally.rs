@@ -109,12 +109,16 @@ impl LinkTally {
 
     /// Counts a packet as dropped; how many samples that is.
     pub(super) fn dropped(&mut self, packet: &Packet) -> u64 {
-        self.dropped += 1;
-        self.gaps.dropped += u64::from(self.gaps.since.is_some());
         let sensors = self.sensors.iter_mut().enumerate();
         let lost =
             sensors.filter(|(i, _)| packet.carries >> i & 1 == 1).map(|(_, sensor)| sensor.dropped += 1);
-        lost.count() as u64
+        let samples = lost.count() as u64;
+        self.dropped += 1;
+        if self.gaps.since.is_some() {
+            self.gaps.dropped += 1;
+            self.gaps.samples += samples;
+        }
+        samples
     }
 
     /// Counts the samples as dropped that newer ones replaced before this packet; how many.
@@ -140,8 +144,9 @@ impl LinkTally {
 pub(super) struct Gaps {
     pub count: u64,
     pub total_ns: i64,
-    /// Packets dropped meanwhile.
+    /// Packets dropped meanwhile, and the samples in them.
     pub dropped: u64,
+    pub samples: u64,
     since: Option<i64>,
 }
 
