@@ -411,4 +411,18 @@ mod tests {
         let queued = link.queued().unwrap();
         assert!((BUFFER - 1..=BUFFER + 64).contains(&queued), "{queued}");
     }
+
+    #[tokio::test]
+    async fn to_hand_bytes_to_the_line_allocates_nothing() {
+        let mut link = crate::link::Link::open(&"pty,9600".parse().unwrap()).await.unwrap();
+        let mut sender = link.sender();
+        let mut full = 0;
+        let counted = allocation_counter::measure(|| {
+            for _ in 0..100 {
+                full += u32::from(sender.send(&[7; 100]) == crate::link::Sent::Full);
+            }
+        });
+        assert!(full > 40, "a buffer of {BUFFER} bytes was filled: {full}");
+        assert_eq!(counted.count_total, 0);
+    }
 }
