@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod budget;
 mod check;
 mod demo;
 mod generate;

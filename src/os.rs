@@ -35,6 +35,16 @@ pub fn unread(file: impl AsFd) -> io::Result<usize> {
     Ok(usize::try_from(bytes).unwrap_or(usize::MAX))
 }
 
+/// Puts what `to` refers to behind the descriptor `file`, whose number stays; what was behind it is closed.
+///
+/// Whoever writes to `file` meanwhile writes to the one or to the other.
+pub fn redirect(file: &OwnedFd, to: &OwnedFd) -> io::Result<()> {
+    // SAFETY: both descriptors are open while they are borrowed. dup3 replaces what the number of `file` refers to
+    // in one step, so it stays a valid descriptor, owned by whom it was.
+    let answer = unsafe { libc::dup3(to.as_raw_fd(), file.as_raw_fd(), libc::O_CLOEXEC) };
+    checked(answer)
+}
+
 /// A descriptor that a task can wait on; it must be non-blocking.
 pub struct Readable(AsyncFd<Arc<OwnedFd>>);
 
@@ -227,6 +237,18 @@ mod tests {
         near.write_all(b"abc").unwrap();
         assert_eq!(unread(&far).unwrap(), 3);
         assert!(unsent(&near).unwrap() >= 3);
+    }
+
+    #[test]
+    fn what_is_behind_a_descriptor_changes_and_what_was_is_closed() {
+        let (near, far) = UnixStream::pair().unwrap();
+        let (other_near, other_far) = UnixStream::pair().unwrap();
+        let near = OwnedFd::from(near);
+        redirect(&near, &other_near.into()).unwrap();
+        rustix::io::write(&near, b"abc").unwrap();
+        assert_eq!(unread(&other_far).unwrap(), 3);
+        let mut nothing = [0; 1];
+        assert_eq!(io::Read::read(&mut &far, &mut nothing).unwrap(), 0, "its other end is closed");
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub struct Report {
     pub seed: u64,
     /// Scene time played, s.
     pub duration_s: f64,
+    /// For how long scene time stood still because a link was full (`overload = "stretch"`), s.
+    pub stretched_s: f64,
     /// Scene seconds a second, or `max`.
     pub speed: serde_json::Value,
     /// What it ran on.
@@ -131,14 +133,30 @@ pub struct LinkReport {
     pub to: String,
     /// What one connects to.
     pub name: String,
+    /// Packets made for it: `sent + dropped + queued`.
+    pub made: u64,
     /// Packets it took.
+    pub sent: u64,
+    /// The same as `sent`.
     pub packets: u64,
     /// Their bytes.
     pub bytes: u64,
     /// Packets it did not take.
     pub dropped: u64,
-    /// Bytes sent against what the baud rate carries (8N1), where there is one.
+    /// Packets still on their way to it when the run was stopped.
+    pub queued: u64,
+    /// What becomes of a packet that it does not take in time: `drop-newest`, `drop-oldest`, `stretch`.
+    pub overload: String,
+    /// The most bytes that it had taken and the other side had not, where the system tells, looked at every 20 ms.
+    pub queue_bytes: Option<u64>,
+    /// Bytes sent a second, first to last packet, against what the baud rate carries (8N1), where there is one.
     pub utilisation: Option<f64>,
+    /// The speed of the UART whose time a pty took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub paced_baud: Option<u32>,
+    /// When the port was unplugged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gaps: Option<Gaps>,
     /// Damaged answers.
     pub crc_errors: u64,
     /// Packets the other side missed by their sequence numbers, where it is known.
@@ -146,4 +164,17 @@ pub struct LinkReport {
     /// Why it takes nothing any more.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub broken: Option<String>,
+}
+
+/// A port that was unplugged while packets were sent.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Gaps {
+    /// How often.
+    pub count: u64,
+    /// For how long in all, from the first packet that it could not take to the next that it took, s.
+    pub total_s: f64,
+    /// Packets dropped meanwhile.
+    pub dropped: u64,
+    /// Samples in them.
+    pub samples: u64,
 }

@@ -27,7 +27,7 @@ pub use document::Place;
 pub use draw::Drawn;
 pub use file::Attached;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
-pub use output::{Destination, Output};
+pub use output::{Destination, Output, Overload};
 pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
 

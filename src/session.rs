@@ -12,6 +12,10 @@ mod answers;
 mod command;
 mod control;
 mod interrupt;
+mod links;
+mod overload;
+#[cfg(test)]
+mod overload_tests;
 mod pacer;
 mod producer;
 mod tally;
@@ -85,6 +89,8 @@ pub struct Outcome {
     pub played: SimTime,
     /// Whether it was stopped by the user.
     pub interrupted: bool,
+    /// For how long scene time stood still for a link that was full, s.
+    pub stretched_s: f64,
     /// Whether the pacing thread had real-time priority.
     pub realtime: bool,
     /// Whether the process was locked in memory.
@@ -153,8 +159,10 @@ struct Shared {
     all_made: AtomicBool,
     /// Due time of the packet sent last, ns.
     scene_ns: AtomicI64,
-    /// Wall time of scene time 0 on the run's clock, ns; −1 before the start.
+    /// Wall time of scene time 0 on the run's clock, ns; −1 before the start. It moves when scene time is stretched.
     start_ns: AtomicI64,
+    /// Scene time at which it was stretched last, ns: what was due earlier was due by an earlier start.
+    stretched_at_ns: AtomicI64,
     packets: AtomicU64,
     dropped: AtomicU64,
 }

@@ -37,7 +37,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("clock", &["os"]),
     // A config packet is in scene time and SYSTEM_TIME carries the scene's date; the load is counted over ticks.
     ("wire", &["sensor", "earth", "schedule"]),
-    ("link", &["os"]),
+    // A pty that plays a UART takes its time.
+    ("link", &["os", "clock"]),
     ("score", &[]),
     // The report of a run holds its score, plain data.
     ("report", &["score"]),

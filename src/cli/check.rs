@@ -4,11 +4,11 @@ mod effects;
 mod json;
 mod text;
 
+use super::budget::Budget;
 use super::{Refusal, Verdict, options, say};
-use crate::report::number;
-use crate::scene::{Output, Plan, Reference};
+use crate::scene::{Plan, Reference};
 use crate::sensor::{SensorKind, SensorPlan, lsb, white_noise};
-use crate::wire::{self, Setup};
+use crate::wire;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -67,8 +67,9 @@ fn terms(plan: &Plan, sensor: &SensorPlan) -> Vec<&'static str> {
     plan.build(sensor).terms().to_vec()
 }
 
-fn setup<'a>(plan: &'a Plan, output: &Output) -> Setup<'a> {
-    Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire }
+/// What each output needs, in real time.
+fn budgets(plan: &Plan) -> Vec<Budget> {
+    Budget::all(plan, &plan.outputs, 1.0)
 }
 
 /// What a user should think about before running the scene.
@@ -91,15 +92,8 @@ fn warnings(plan: &Plan) -> Vec<String> {
     }
     for output in &plan.outputs {
         warnings.extend(wire::warnings(output.to.protocol, &plan.sensors));
-        let (bytes, _) = wire::load(output.to.protocol, &setup(plan, output));
-        if let Some(baud) = output.to.address.baud().filter(|baud| bytes * 10.0 > f64::from(*baud)) {
-            warnings.push(format!(
-                "{} needs {} bytes/s, but {baud} baud carries {} (8N1)",
-                output.to,
-                number(bytes),
-                baud / 10
-            ));
-        }
     }
+    let over = budgets(plan).into_iter().filter(|budget| !budget.fits());
+    warnings.extend(over.map(|budget| budget.to_string()));
     warnings
 }

@@ -1,11 +1,12 @@
 //! `ratetable run`: a scene in real time.
 
+use super::budget::Budget;
 use super::demo::{Firmware, Received};
 use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary};
 use crate::link::Address;
-use crate::report::{Host, Interval, Late, Limit, LinkReport, Report, SensorReport, Spread};
-use crate::scene::{Destination, Output, Plan};
+use crate::report::{Gaps, Host, Interval, Late, Limit, LinkReport, Report, SensorReport, Spread};
+use crate::scene::{Destination, Output, Overload, Plan};
 use crate::score::Score;
 use crate::session::{self, Event, Job, Outcome, Speed};
 use crate::time::SimTime;
@@ -43,7 +44,7 @@ pub struct Arguments {
     /// Write the dataset played, the estimates that came back and the report into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace the output folder if there is one
+    /// Start although a baud rate does not carry the packets, and replace the output folder if there is one
     #[arg(long)]
     force: bool,
     /// Print the report as JSON on standard output
@@ -102,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
 }
 
 fn demo_output() -> Output {
-    Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None } })
+    Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None, baud: None } })
 }
 
 /// What cannot go together, before anything is opened.
@@ -123,7 +124,33 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
     if let Some(dir) = &arguments.out {
         super::generate::may_write(dir, arguments.force)?;
     }
-    Ok(())
+    match arguments.speed {
+        Speed::Times(times) => afford(plan, outputs, times, arguments.force),
+        Speed::Max => Ok(()),
+    }
+}
+
+/// Every output that its link does not carry is refused, unless its user wants it so.
+fn afford(plan: &Plan, outputs: &[Output], speed: f64, force: bool) -> Result<(), Refusal> {
+    let mut refused = Vec::new();
+    for output in outputs.iter().filter(|output| output.to.address.baud().is_some()) {
+        let budget = Budget::of(plan, output, speed);
+        match (budget.fits(), force || !refuses(output)) {
+            (true, _) => {}
+            (false, false) => refused.push(budget.to_string()),
+            (false, true) => {
+                let stretched = output.overload == Overload::Stretch;
+                let but = if stretched { "scene time is stretched" } else { "the rest is lost" };
+                eprintln!("warning: {}; {but}", budget.arithmetic());
+            }
+        }
+    }
+    if refused.is_empty() { Ok(()) } else { Err(Refusal(refused.join("\n"))) }
+}
+
+/// Whether an output that its link does not carry would lose packets that nobody has given up.
+fn refuses(output: &Output) -> bool {
+    !output.force && output.overload != Overload::Stretch
 }
 
 fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {
@@ -168,10 +195,17 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
     let link = |output: &Output| LinkReport {
         to: output.to.to_string(),
         name: output.to.to_string(),
+        made: 0,
+        sent: 0,
         packets: 0,
         bytes: 0,
         dropped: 0,
+        queued: 0,
+        overload: output.overload.name().into(),
+        queue_bytes: Some(0),
         utilisation: None,
+        paced_baud: None,
+        gaps: Some(Gaps::default()),
         crc_errors: 0,
         lost_seq: None,
         broken: None,
@@ -192,6 +226,7 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         scene: plan.name.clone(),
         seed: plan.seed,
         duration_s: 0.0,
+        stretched_s: 0.0,
         speed: Value::Null,
         host: host(false, false),
         sensors: plan.sensors.iter().map(sensor).collect(),
@@ -209,6 +244,7 @@ fn host(realtime: bool, memory_locked: bool) -> Host {
 
 fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.duration_s = outcome.played.seconds();
+    report.stretched_s = outcome.stretched_s;
     report.speed = match speed {
         Speed::Times(times) => times.into(),
         Speed::Max => "max".into(),

@@ -17,6 +17,20 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     text += &sensors(report);
     text.push('\n');
     text += &links(report);
+    if report.stretched_s > 0.0 {
+        text +=
+            &format!("scene time stood still for {} s while a link was full\n", number(report.stretched_s));
+    }
+    for (link, gaps) in report.links.iter().filter_map(|link| Some((link, link.gaps?))) {
+        text += &format!(
+            "{} was unplugged {}, {} s in all: {} packets with {} samples dropped\n",
+            link.name,
+            if gaps.count == 1 { "once".into() } else { format!("{} times", gaps.count) },
+            number(gaps.total_s),
+            gaps.dropped,
+            gaps.samples
+        );
+    }
     if let Some(score) = &report.attitude {
         let delay = score
             .delay_ms
@@ -68,17 +82,19 @@ fn links(report: &Report) -> String {
     let rows = report.links.iter().map(|link| {
         let missed = link.lost_seq.map_or("-".into(), |lost| lost.to_string());
         let load = link.utilisation.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
+        let most = link.queue_bytes.map_or("-".into(), |bytes| bytes.to_string());
         vec![
             link.name.clone(),
             link.packets.to_string(),
             link.bytes.to_string(),
             link.dropped.to_string(),
             missed,
+            most,
             load,
         ]
     });
     table(
-        &["link", "packets", "bytes", "dropped", "missed by receiver", "of baud rate"],
+        &["link", "packets", "bytes", "dropped", "missed by receiver", "most waiting", "of baud rate"],
         &rows.collect::<Vec<_>>(),
     )
 }

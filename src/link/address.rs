@@ -5,14 +5,12 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::LinkError;
+use super::baud::DEFAULT_BAUD;
 use super::scheme;
-
-/// The speed of a serial port that is given none: 921 600 baud.
-pub const DEFAULT_BAUD: u32 = 921_600;
 
 /// The address of a link, spelled as `pymavlink` and `rust-mavlink` spell theirs.
 ///
-/// `pty`, `pty:PATH`, `/dev/ttyACM0[,BAUD]`, `serial:PATH[,BAUD]`, `tcpin:[ADDR:]PORT`,
+/// `pty[:PATH][,BAUD]`, `/dev/ttyACM0[,BAUD]`, `serial:PATH[,BAUD]`, `tcpin:[ADDR:]PORT`,
 /// `tcpout:ADDR:PORT`, `udpin:[ADDR:]PORT`, `udpout:ADDR:PORT`, `file:PATH`, and `-` for standard
 /// output. What [`Display`](fmt::Display) writes reads back to the same address.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -21,6 +19,8 @@ pub enum Address {
     Pty {
         /// Where a symbolic link to the terminal is made.
         path: Option<PathBuf>,
+        /// The speed of the UART whose time it takes; without one, bytes arrive as fast as they are read.
+        baud: Option<u32>,
     },
     /// A serial port, 8 data bits, no parity, one stop bit.
     Serial {
@@ -47,9 +47,10 @@ pub enum Address {
 }
 
 impl Address {
-    /// The speed of a serial port; `None` for every other link.
+    /// The speed of a serial port, or of the UART that a pty plays; `None` for every other link.
     pub fn baud(&self) -> Option<u32> {
         match self {
+            Self::Pty { baud, .. } => *baud,
             Self::Serial { baud, .. } => Some(baud.unwrap_or(DEFAULT_BAUD)),
             _ => None,
         }
@@ -59,6 +60,22 @@ impl Address {
     pub fn or_baud(mut self, default: u32) -> Self {
         if let Self::Serial { baud, .. } = &mut self {
             baud.get_or_insert(default);
+        }
+        self
+    }
+
+    /// The same address, a pty taking nobody's time.
+    pub fn unpaced(mut self) -> Self {
+        if let Self::Pty { baud, .. } = &mut self {
+            *baud = None;
+        }
+        self
+    }
+
+    /// The same address at another speed, where it has one.
+    pub fn at_baud(mut self, speed: u32) -> Self {
+        if let Self::Serial { baud, .. } | Self::Pty { baud, .. } = &mut self {
+            *baud = Some(speed);
         }
         self
     }
@@ -84,15 +101,15 @@ impl FromStr for Address {
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Pty { path: None } => f.write_str("pty"),
-            Self::Pty { path: Some(path) } => write!(f, "pty:{}", path.display()),
+            Self::Pty { path, baud } => {
+                f.write_str("pty")?;
+                path.as_ref().map_or(Ok(()), |path| write!(f, ":{}", path.display()))?;
+                comma(f, *baud)
+            }
             Self::Serial { path, baud } => {
                 let scheme = if path.is_absolute() { "" } else { "serial:" };
                 write!(f, "{scheme}{}", path.display())?;
-                match baud {
-                    Some(baud) => write!(f, ",{baud}"),
-                    None => Ok(()),
-                }
+                comma(f, *baud)
             }
             Self::TcpIn(place) => write!(f, "tcpin:{place}"),
             Self::TcpOut(place) => write!(f, "tcpout:{place}"),
@@ -102,6 +119,11 @@ impl fmt::Display for Address {
             Self::Stdout => f.write_str("-"),
         }
     }
+}
+
+/// A speed after an address.
+fn comma(f: &mut fmt::Formatter<'_>, baud: Option<u32>) -> fmt::Result {
+    baud.map_or(Ok(()), |baud| write!(f, ",{baud}"))
 }
 
 /// A place in a network: a name or an address, and a port.
@@ -153,6 +175,10 @@ mod tests {
         Place::new(host, port)
     }
 
+    fn pty(path: Option<&str>, baud: Option<u32>) -> Address {
+        Address::Pty { path: path.map(PathBuf::from), baud }
+    }
+
     fn serial(path: &str, baud: Option<u32>) -> Address {
         let path = path.into();
         Address::Serial { path, baud }
@@ -161,8 +187,10 @@ mod tests {
     #[test]
     fn every_spelling_is_understood_and_reads_back() {
         let cases = [
-            ("pty", Address::Pty { path: None }),
-            ("pty:/tmp/imu", Address::Pty { path: Some("/tmp/imu".into()) }),
+            ("pty", pty(None, None)),
+            ("pty:/tmp/imu", pty(Some("/tmp/imu"), None)),
+            ("pty,115200", pty(None, Some(115_200))),
+            ("pty:/tmp/imu,1234567", pty(Some("/tmp/imu"), Some(1_234_567))),
             ("/dev/ttyACM0", serial("/dev/ttyACM0", None)),
             ("/dev/ttyACM0,57600", serial("/dev/ttyACM0", Some(57_600))),
             ("serial:/dev/ttyUSB0", serial("/dev/ttyUSB0", None)),
@@ -208,6 +236,9 @@ mod tests {
             ("carrier-pigeon:1", &["`carrier-pigeon`", "one of pty", "udpout:ADDR:PORT"]),
             ("", &["empty", "one of pty"]),
             ("pty:", &["path", "pty:/tmp/imu"]),
+            ("pty:,115200", &["path", "pty:/tmp/imu", "pty,115200"]),
+            ("pty,fast", &["`fast`", "pty,921600"]),
+            ("pty:/tmp/imu,0", &["`0`", "pty:/tmp/imu,921600"]),
             ("file:", &["path", "file:"]),
             ("file", &["path", "file:"]),
             ("serial:", &["path", "serial:/dev/ttyUSB0"]),

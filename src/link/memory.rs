@@ -1,4 +1,4 @@
-//! A link within the process, for tests: bounded, and it stalls or breaks when told to.
+//! A link within the process, for tests: bounded, and it stalls, is unplugged or breaks when told to.
 
 use std::io;
 use std::os::fd::BorrowedFd;
@@ -26,6 +26,7 @@ pub fn memory(capacity: usize) -> (Link, Far) {
 #[derive(Default)]
 struct Switches {
     stalled: AtomicBool,
+    unplugged: AtomicBool,
     gone: AtomicBool,
 }
 
@@ -52,6 +53,11 @@ impl Far {
     /// While it stalls, the link takes nothing, whatever room it has.
     pub fn stall(&self, stalled: bool) {
         self.switches.stalled.store(stalled, Ordering::Release);
+    }
+
+    /// While it is unplugged, the link is `Away`, as a serial port that may come back.
+    pub fn unplug(&self, unplugged: bool) {
+        self.switches.unplugged.store(unplugged, Ordering::Release);
     }
 
     /// Sends bytes back.
@@ -81,6 +87,9 @@ impl Out for Ring {
         if self.switches.gone.load(Ordering::Acquire) || self.producer.is_abandoned() {
             return Err(io::ErrorKind::BrokenPipe.into());
         }
+        if self.comes_back() {
+            return Err(io::ErrorKind::NotConnected.into());
+        }
         let stalled = self.switches.stalled.load(Ordering::Acquire);
         if stalled || self.producer.slots() == 0 {
             return Err(io::ErrorKind::WouldBlock.into());
@@ -91,5 +100,9 @@ impl Out for Ring {
 
     fn poll_fd(&self) -> Option<BorrowedFd<'_>> {
         None
+    }
+
+    fn comes_back(&self) -> bool {
+        self.switches.unplugged.load(Ordering::Acquire)
     }
 }

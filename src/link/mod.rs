@@ -10,11 +10,15 @@
 //! [`SCHEMES`] lists them. A link that reaches beyond this machine does so only because an address was given.
 
 mod address;
+mod baud;
 mod error;
 mod file;
 mod holders;
 mod memory;
 mod net;
+mod plug;
+#[cfg(test)]
+mod plug_tests;
 mod ports;
 mod pty;
 mod receiver;
@@ -26,13 +30,15 @@ mod tcp;
 #[cfg(test)]
 mod tests;
 mod tty;
+mod uart;
 mod udp;
 mod visitors;
 
 use std::fmt::Display;
 use std::io;
 
-pub use address::{Address, DEFAULT_BAUD, Place};
+pub use address::{Address, Place};
+pub use baud::{DEFAULT_BAUD, STANDARD_BAUDS, bytes_per_second};
 pub use error::LinkError;
 pub use holders::Holder;
 pub use memory::{Far, memory};
@@ -68,7 +74,7 @@ impl Link {
     /// Outside a tokio runtime with I/O and time enabled.
     pub async fn open(address: &Address) -> Result<Self, LinkError> {
         match address {
-            Address::Pty { path } => pty::open(address, path.as_deref()),
+            Address::Pty { path, baud } => pty::open(address, path.as_deref(), *baud),
             Address::Serial { path, baud } => serial::open(address, path, baud.unwrap_or(DEFAULT_BAUD)),
             Address::TcpIn(place) => tcp::listen(address, place).await,
             Address::TcpOut(place) => tcp::connect(address, place).await,
@@ -117,22 +123,44 @@ impl Link {
     }
 
     /// Whether somebody is there now, as far as the link can know: a pty's reader, or a peer that
-    /// has come. Serial ports, files and standard output always have somebody.
+    /// has come, or a serial port that is plugged in. Files and standard output always have somebody.
     pub fn peer_is_present(&self) -> bool {
         match &self.kind {
             Kind::Pty(link) => link.present(),
             Kind::Tcp(link) => link.present(),
             Kind::Udp(link) => link.present(),
-            Kind::Serial(_) | Kind::Plain => true,
+            Kind::Serial(link) => link.present(),
+            Kind::Plain => true,
         }
     }
 
     /// Whether somebody was there and nobody is now, where the [`Sender`] does not say so itself
-    /// ([`Sent::Gone`]): a pty without its reader is only `Full`, as another may come.
+    /// ([`Sent::Gone`]): a pty without its reader is only `Full`, as another may come, and a serial port that was
+    /// pulled out only `Away`.
     ///
     /// It may read through `/proc`: ask now and then, not with every packet.
     pub fn peer_has_left(&self) -> bool {
-        matches!(&self.kind, Kind::Pty(link) if link.has_left())
+        match &self.kind {
+            Kind::Pty(link) => link.has_left(),
+            Kind::Serial(link) => !link.present(),
+            Kind::Tcp(_) | Kind::Udp(_) | Kind::Plain => false,
+        }
+    }
+
+    /// Whether it is a port that was pulled out and is looked for by its path, as long as somebody receives.
+    pub fn is_unplugged(&self) -> bool {
+        matches!(&self.kind, Kind::Serial(link) if !link.present())
+    }
+
+    /// Bytes that were sent and that the other side does not have yet, where the system tells: in the buffers of a
+    /// serial port's driver, of a TCP connection, of a pty (as far as they show) and of the UART it plays.
+    pub fn queued(&self) -> Option<usize> {
+        match &self.kind {
+            Kind::Pty(link) => link.queued(),
+            Kind::Serial(link) => link.queued(),
+            Kind::Tcp(link) => link.queued(),
+            Kind::Udp(_) | Kind::Plain => None,
+        }
     }
 
     /// The sending side, for one thread.

@@ -19,10 +19,12 @@ use rustix::pty::{OpenptFlags, grantpt, ioctl_tiocgptpeer, openpt, ptsname, unlo
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use super::address::{Address, Problem};
+use super::baud;
 use super::receiver::{Receiver, Source};
-use super::scheme::{self, Scheme};
+use super::scheme::Scheme;
 use super::sender::{Carry, Sender};
 use super::tty::Terminal;
+use super::uart::Uart;
 use super::visitors::Visitors;
 use super::{Kind, Link, LinkError};
 use crate::os::{self, Readable};
@@ -30,17 +32,21 @@ use crate::os::{self, Readable};
 /// Its line in the table of links.
 pub(super) const SCHEME: Scheme = Scheme {
     name: "pty",
-    spelling: "pty[:PATH]",
-    about: "a new pseudo terminal, published as a symbolic link at PATH; starts when a reader opens it",
+    spelling: "pty[:PATH][,BAUD]",
+    about: "a new pseudo terminal, published as a symbolic link at PATH; starts when a reader opens it; with BAUD it takes the time of a UART",
     parse,
 };
 
 fn parse(rest: Option<&str>) -> Result<Address, Problem> {
-    let path = match rest {
-        Some(path) => Some(scheme::path(path, "pty:/tmp/imu, or plain pty")?),
-        None => None,
-    };
-    Ok(Address::Pty { path })
+    let Some(rest) = rest else { return Ok(Address::Pty { path: None, baud: None }) };
+    let (path, baud) = baud::path_and_speed("pty:", rest, "pty:/tmp/imu, plain pty, or pty,115200")?;
+    Ok(Address::Pty { path: Some(path), baud })
+}
+
+/// `pty,BAUD`: a speed needs no path before it.
+pub(super) fn parse_speed(digits: &str) -> Result<Address, Problem> {
+    let baud = baud::speed("pty", digits)?;
+    Ok(Address::Pty { path: None, baud: Some(baud) })
 }
 
 /// The rest between two looks at the buffers when closing.
@@ -59,22 +65,31 @@ pub(super) struct Pty {
     device: PathBuf,
     published: Option<PathBuf>,
     visitors: Visitors,
+    /// Where it takes the time of one.
+    uart: Option<Uart>,
 }
 
-pub(super) fn open(address: &Address, path: Option<&Path>) -> Result<Link, LinkError> {
+pub(super) fn open(address: &Address, path: Option<&Path>, baud: Option<u32>) -> Result<Link, LinkError> {
     let link = address.to_string();
-    let (mut pty, readable) = pair().map_err(|source| LinkError::Io {
-        link: link.clone(),
-        doing: "make a pseudo terminal".to_owned(),
-        source,
-    })?;
+    let refused = |doing: &str, source| LinkError::Io { link: link.clone(), doing: doing.to_owned(), source };
+    let (mut pty, readable) = pair().map_err(|source| refused("make a pseudo terminal", source))?;
     if let Some(path) = path {
         publish(&link, &pty.device, path)?;
         pty.published = Some(path.to_owned());
     }
     let name = path.unwrap_or(&pty.device).display().to_string();
-    let sender = Sender::new(Terminal(Arc::clone(&pty.master)), Carry::packet());
-    Ok(Link::new(name, Kind::Pty(pty), sender, Some(Receiver(Source::Pty(readable)))))
+    let mut notices = Vec::new();
+    let sender = match baud {
+        None => Sender::new(Terminal(Arc::clone(&pty.master)), Carry::packet()),
+        Some(baud) => {
+            let started = Uart::start(baud, Arc::clone(&pty.master));
+            let (uart, sender) = started.map_err(|source| refused("start the thread of a UART", source))?;
+            notices.push(uart.notice(&name));
+            pty.uart = Some(uart);
+            sender
+        }
+    };
+    Ok(Link { notices, ..Link::new(name, Kind::Pty(pty), sender, Some(Receiver(Source::Pty(readable)))) })
 }
 
 /// Makes a raw pair, and the master as something to wait on.
@@ -93,7 +108,7 @@ fn pair() -> io::Result<(Pty, Readable)> {
     let visitors = Visitors::watch(&device, Arc::clone(&slave))?;
     let master = Arc::new(master);
     let readable = Readable::new(Arc::clone(&master))?;
-    Ok((Pty { master, slave, device, published: None, visitors }, readable))
+    Ok((Pty { master, slave, device, published: None, visitors, uart: None }, readable))
 }
 
 impl Pty {
@@ -109,8 +124,19 @@ impl Pty {
         self.visitors.arrival().await;
     }
 
-    /// Waits, up to a second, until the reader has emptied the buffers; not when there is none.
+    /// Bytes that the reader has not read, as far as the kernel shows them: at most 4 kB of its own buffers, and
+    /// what a UART holds.
+    pub(super) fn queued(&self) -> Option<usize> {
+        let unread = os::unread(&self.slave).ok()?;
+        Some(unread + self.uart.as_ref().map_or(0, Uart::held))
+    }
+
+    /// Waits, up to a second, until the reader has emptied the buffers; not when there is none. A UART first sends
+    /// what it holds.
     pub(super) async fn close(self) {
+        if let Some(uart) = self.uart.as_ref().filter(|_| self.visitors.present()) {
+            uart.close().await;
+        }
         let mut empty = 0;
         for _ in 0..LOOKS {
             empty = if self.is_read() { empty + 1 } else { 0 };
@@ -176,8 +202,8 @@ mod tests {
     use super::*;
 
     fn open(path: &Path) -> Result<Link, LinkError> {
-        let address = Address::Pty { path: Some(path.to_owned()) };
-        super::open(&address, Some(path))
+        let address = Address::Pty { path: Some(path.to_owned()), baud: None };
+        super::open(&address, Some(path), None)
     }
 
     /// The slave that `path` links to.

@@ -50,6 +50,9 @@ pub(super) fn parse(spelled: &str) -> Result<Address, Problem> {
     if spelled.starts_with('/') {
         return serial::parse(spelled);
     }
+    if let Some(speed) = spelled.strip_prefix("pty,") {
+        return pty::parse_speed(speed);
+    }
     let (name, rest) = match spelled.split_once(':') {
         Some((name, rest)) => (name, Some(rest)),
         None => (spelled, None),

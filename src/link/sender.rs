@@ -17,6 +17,9 @@ pub enum Sent {
     Done,
     /// The link takes nothing now, or nobody has come to it yet, and it has none of the packet.
     Full,
+    /// The port was pulled out, and may come back; it has none of the packet, and the rest of the one before is
+    /// lost.
+    Away,
     /// Nobody is there any more, or the packet can never be sent (`InvalidInput`: too long).
     Gone(io::ErrorKind),
 }
@@ -37,6 +40,11 @@ pub(super) trait Out: Send {
 
     /// What to wait on until it takes more, where there is such a thing now.
     fn poll_fd(&self) -> Option<BorrowedFd<'_>>;
+
+    /// Whether one who is not there now (`NotConnected`) may come back.
+    fn comes_back(&self) -> bool {
+        false
+    }
 }
 
 impl Sender {
@@ -53,16 +61,16 @@ impl Sender {
 
     /// Sends `bytes`, waiting for as long as the link is full; nothing is dropped.
     ///
-    /// `Full` only after `stop` was set, looked at every 50 ms. More than [`MAX_PACKET`] bytes may
-    /// then have been sent in part.
+    /// `Full`, or `Away`, only after `stop` was set, looked at every 50 ms. More than [`MAX_PACKET`] bytes may then
+    /// have been sent in part.
     pub fn send_all(&mut self, bytes: &[u8], stop: &AtomicBool) -> Sent {
         let gather = self.carry.gather != Gather::Never;
         for part in bytes.chunks(MAX_PACKET) {
             loop {
                 match self.take(part, gather) {
                     Sent::Done => break,
-                    Sent::Full if stop.load(Ordering::Relaxed) => return Sent::Full,
-                    Sent::Full => _ = self.wait(),
+                    refused @ (Sent::Full | Sent::Away) if stop.load(Ordering::Relaxed) => return refused,
+                    Sent::Full | Sent::Away => _ = self.wait(),
                     gone @ Sent::Gone(_) => return gone,
                 }
             }
@@ -93,6 +101,7 @@ impl Sender {
             match self.flush_carry() {
                 Sent::Done => return Ok(()),
                 Sent::Gone(kind) => return Err(kind.into()),
+                Sent::Away => return Err(io::ErrorKind::NotConnected.into()),
                 Sent::Full if self.carry.kept().len() < before => idle_ms = 0,
                 Sent::Full if idle_ms > PATIENCE_MS && !patient => {
                     return Err(io::ErrorKind::TimedOut.into());
@@ -142,7 +151,7 @@ impl Sender {
 
     /// What a refusal means; nobody waits for what is kept for one who is gone.
     fn refused(&mut self, sent: Sent) -> Sent {
-        if let Sent::Gone(_) = sent {
+        if let Sent::Gone(_) | Sent::Away = sent {
             self.carry.clear();
         }
         sent
@@ -192,6 +201,9 @@ fn write(to: &mut dyn Out, bytes: &[u8]) -> Result<usize, Sent> {
             Ok(0) if !bytes.is_empty() => return Err(Sent::Full),
             Ok(count) => return Ok(count),
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) if error.kind() == io::ErrorKind::NotConnected && to.comes_back() => {
+                return Err(Sent::Away);
+            }
             Err(error) => return Err(meaning(&error)),
         }
     }

@@ -15,13 +15,14 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 use tokio::sync::Mutex;
 use tokio_serial::{ClearBuffer, ErrorKind, SerialPort, SerialPortBuilderExt, SerialStream};
 
-use super::address::{Address, DEFAULT_BAUD, Problem};
+use super::address::{Address, Problem};
+use super::baud;
 use super::holders::holders;
+use super::plug::{Plug, Plugged};
 use super::ports::ports;
 use super::receiver::{Receiver, Source, read};
-use super::scheme::{self, Scheme};
+use super::scheme::Scheme;
 use super::sender::{Carry, Sender};
-use super::tty::Terminal;
 use super::{Kind, Link, LinkError};
 use crate::os;
 
@@ -35,43 +36,48 @@ pub(super) const SCHEME: Scheme = Scheme {
 
 /// `PATH[,BAUD]`.
 pub(super) fn parse(rest: &str) -> Result<Address, Problem> {
-    let example = "serial:/dev/ttyUSB0,921600";
-    let Some((path, digits)) = rest.rsplit_once(',') else {
-        if let Some((path, digits)) = rest.rsplit_once(':')
-            && digits.parse::<u32>().is_ok_and(|number| number >= *SPEEDS.start())
-        {
-            return Err(Problem::new("the speed stands after a comma", format!("say {path},{digits}")));
-        }
-        let path = scheme::path(rest, example)?;
-        return Ok(Address::Serial { path, baud: None });
-    };
-    let path = scheme::path(path, example)?;
-    match digits.parse() {
-        Ok(baud) if SPEEDS.contains(&baud) => Ok(Address::Serial { path, baud: Some(baud) }),
-        _ => Err(Problem::new(
-            format!("`{digits}` is no speed in baud"),
-            format!("say {},{DEFAULT_BAUD}", path.display()),
-        )),
-    }
+    let (path, baud) = baud::path_and_speed("", rest, "serial:/dev/ttyUSB0,921600")?;
+    Ok(Address::Serial { path, baud })
 }
 
-/// The speeds that make sense, in baud.
-const SPEEDS: std::ops::RangeInclusive<u32> = 50..=20_000_000;
+/// Between two tries to open a port that was pulled out.
+const AGAIN: Duration = Duration::from_millis(100);
+/// How soon the receiving side sees that the sending side has found the port gone.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// An open serial port.
 pub(super) struct Serial {
-    port: Arc<OwnedFd>,
+    plug: Arc<Plug>,
     /// Dropped, it gives the port back: it lives as long as the link, whatever its receiver does.
-    _claim: Arc<Mutex<SerialStream>>,
+    _claim: Arc<Mutex<Option<SerialStream>>>,
+}
+
+/// Opens a port, which may then come and go for as long as somebody receives: it is looked for by its path.
+pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, LinkError> {
+    let (port, stream) = claim(address, path, baud)?;
+    let notices = notices(path, baud, &port, &stream);
+    let plug = Arc::new(Plug::new(port));
+    let sender = Sender::new(Plugged(Arc::clone(&plug)), Carry::packet());
+    let stream = Arc::new(Mutex::new(Some(stream)));
+    let input = In {
+        plug: Arc::clone(&plug),
+        stream: Arc::clone(&stream),
+        address: address.clone(),
+        path: path.into(),
+        baud,
+    };
+    let serial = Serial { plug, _claim: stream };
+    let receiver = Receiver(Source::Serial(input));
+    Ok(Link { notices, ..Link::new(path.display(), Kind::Serial(serial), sender, Some(receiver)) })
 }
 
 /// Opens a port twice: once for us, to ask and to write without an executor, and once as
 /// [`SerialStream`], which claims and configures it and receives.
 ///
 /// Neither is closed before the other is open: the modem lines rise once, which may reset a board.
-pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, LinkError> {
+fn claim(address: &Address, path: &Path, baud: u32) -> Result<(OwnedFd, SerialStream), LinkError> {
     let refused = |errno| refusal(address, path, baud, errno);
-    let port = Arc::new(ask(path).map_err(refused)?);
+    let port = ask(path).map_err(refused)?;
     let builder = tokio_serial::new(path.to_string_lossy(), baud);
     let stream = builder.open_native_async().map_err(|error| match error.kind() {
         // All that it says of a port that another has claimed since we asked.
@@ -87,12 +93,7 @@ pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, Li
     })?;
     // Forgets what came before; a port that cannot has nothing to forget.
     let _ = stream.clear(ClearBuffer::All);
-    let notices = notices(path, baud, &port, &stream);
-    let sender = Sender::new(Terminal(Arc::clone(&port)), Carry::packet());
-    let stream = Arc::new(Mutex::new(stream));
-    let receiver = Receiver(Source::Serial(In(Arc::clone(&stream))));
-    let serial = Serial { port, _claim: stream };
-    Ok(Link { notices, ..Link::new(path.display(), Kind::Serial(serial), sender, Some(receiver)) })
+    Ok((port, stream))
 }
 
 /// Opens a port and asks for what [`SerialStream`] would not tell: why it cannot be opened, whether
@@ -137,7 +138,7 @@ fn notices(path: &Path, baud: u32, port: &OwnedFd, stream: &SerialStream) -> Vec
             "low latency could not be set on {device}: {error}; answers may come up to 16 ms late"
         )),
     }
-    if let Some((timer, milliseconds)) = latency_timer(path)
+    if let Some((timer, milliseconds)) = latency_timer(Path::new(TERMINALS), path)
         && milliseconds > 1
     {
         notices.push(format!(
@@ -150,25 +151,71 @@ fn notices(path: &Path, baud: u32, port: &OwnedFd, stream: &SerialStream) -> Vec
 }
 
 impl Serial {
+    /// Whether the port is there.
+    pub(super) fn present(&self) -> bool {
+        !self.plug.is_out()
+    }
+
+    /// Bytes that the driver has not sent.
+    pub(super) fn queued(&self) -> Option<usize> {
+        os::unsent(&*self.plug).ok()
+    }
+
     /// Waits, up to a second, until the port has sent what it holds, and drops the rest: the
     /// kernel itself would wait for thirty.
     pub(super) async fn close(self) {
         for _ in 0..200 {
-            if os::unsent(&self.port).unwrap_or(0) == 0 {
+            if self.queued().unwrap_or(0) == 0 {
                 return;
             }
             tokio::time::sleep(Duration::from_millis(5)).await;
         }
-        let _ = tcflush(&self.port, QueueSelector::OFlush);
+        let _ = tcflush(&*self.plug, QueueSelector::OFlush);
     }
 }
 
-/// The receiving side: nobody else ever locks it.
-pub(super) struct In(Arc<Mutex<SerialStream>>);
+/// The receiving side, which also sees to it that a port that was pulled out is found again. Nobody else ever locks
+/// the stream.
+pub(super) struct In {
+    plug: Arc<Plug>,
+    stream: Arc<Mutex<Option<SerialStream>>>,
+    address: Address,
+    path: PathBuf,
+    baud: u32,
+}
 
 impl In {
     pub(super) async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
-        read(&mut *self.0.lock().await, buffer).await
+        let mut stream = self.stream.lock().await;
+        loop {
+            let Some(port) = stream.as_mut().filter(|_| !self.plug.is_out()) else {
+                self.plug.pull();
+                // Nobody may hold the old one when the port comes back.
+                *stream = None;
+                *stream = Some(found_again(&self.plug, &self.address, &self.path, self.baud).await);
+                continue;
+            };
+            match tokio::time::timeout(LOOK, read(port, buffer)).await {
+                Ok(Ok(0) | Err(_)) if self.plug.has_gone() => self.plug.pull(),
+                Ok(answer) => return answer,
+                // A look at the plug.
+                Err(_) => {}
+            }
+        }
+    }
+}
+
+/// Waits until the port is back, and puts it in the place of the old one.
+async fn found_again(plug: &Plug, address: &Address, path: &Path, baud: u32) -> SerialStream {
+    loop {
+        tokio::time::sleep(AGAIN).await;
+        // Not there yet, or not yet ours: its rights are set a moment after it appears.
+        if let Ok((port, stream)) = claim(address, path, baud) {
+            let _ = os::set_low_latency(&port);
+            if plug.put_in(&port).is_ok() {
+                return stream;
+            }
+        }
     }
 }
 
@@ -214,12 +261,18 @@ fn group_name(groups: &str, id: u32) -> Option<String> {
     })
 }
 
-/// The file and the value, in ms, of an FTDI adapter's latency timer.
-fn latency_timer(path: &Path) -> Option<(PathBuf, u32)> {
-    let device = fs::canonicalize(path).ok()?;
-    let timer = Path::new("/sys/class/tty").join(device.file_name()?).join("device/latency_timer");
-    let milliseconds = fs::read_to_string(&timer).ok()?.trim().parse().ok()?;
-    Some((timer, milliseconds))
+/// Where the system shows its terminals.
+const TERMINALS: &str = "/sys/class/tty";
+
+/// The file and the value, in ms, of an FTDI adapter's latency timer: the driver shows it with the port, some
+/// versions with the USB interface above it.
+fn latency_timer(terminals: &Path, path: &Path) -> Option<(PathBuf, u32)> {
+    let device = terminals.join(fs::canonicalize(path).ok()?.file_name()?).join("device");
+    ["latency_timer", "../latency_timer"].iter().find_map(|place| {
+        let timer = device.join(place);
+        let milliseconds = fs::read_to_string(&timer).ok()?.trim().parse().ok()?;
+        Some((timer, milliseconds))
+    })
 }
 
 #[cfg(test)]
@@ -274,6 +327,24 @@ mod tests {
         let text = busy.to_string();
         assert!(text.contains("held by QGroundControl (process 42)"), "{text}");
         assert!(text.contains("AutoConnect"), "{text}");
+    }
+
+    #[test]
+    fn an_adapter_that_holds_back_is_found_wherever_its_driver_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let port = folder.path().join("ttyUSB7");
+        fs::write(&port, "").unwrap();
+        let terminals = folder.path().join("class");
+        assert_eq!(latency_timer(&terminals, &port), None);
+        let interface = folder.path().join("interface");
+        fs::create_dir_all(interface.join("ttyUSB7")).unwrap();
+        fs::create_dir_all(terminals.join("ttyUSB7")).unwrap();
+        let device = terminals.join("ttyUSB7/device");
+        std::os::unix::fs::symlink(interface.join("ttyUSB7"), &device).unwrap();
+        fs::write(interface.join("latency_timer"), "16\n").unwrap();
+        assert_eq!(latency_timer(&terminals, &port), Some((device.join("../latency_timer"), 16)));
+        fs::write(interface.join("ttyUSB7/latency_timer"), "1\n").unwrap();
+        assert_eq!(latency_timer(&terminals, &port), Some((device.join("latency_timer"), 1)));
     }
 
     #[test]

@@ -91,6 +91,11 @@ impl Tcp {
         self.0.connected().await.map(drop)
     }
 
+    /// Bytes that the peer has not confirmed.
+    pub(super) fn queued(&self) -> Option<usize> {
+        os::unsent(self.0.stream.get()?).ok()
+    }
+
     /// Says that nothing more comes, and waits up to a second until the peer has it all.
     ///
     /// What the peer still sends is read and dropped: closing with bytes unread would reset the

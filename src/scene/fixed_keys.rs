@@ -48,6 +48,17 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "layout",
         "of `mpu`: \"separate\" or \"burst\" (default: burst where gyro and accel tick alike)",
     ),
+    (
+        "output",
+        "pace",
+        "whether a pty with a baud rate, such as \"mpu@pty,115200\", takes the time of a UART (default true)",
+    ),
+    (
+        "output",
+        "overload",
+        "what becomes of a packet that the link does not take in time: \"drop-newest\" (default), \"drop-oldest\", or \"stretch\", for which scene time stands still",
+    ),
+    ("output", "force", "true: start although the baud rate does not carry the packets (default false)"),
 ];
 
 /// Keys of every sensor besides its error terms'.

@@ -399,6 +399,33 @@ const REST: &[Case] = &[
         &[("6:10", "only `mpu` has layouts, not `csv`")],
     ),
     (
+        gyro!("[[output]]\nto = \"mpu@pty\"\npace = true\n"),
+        &[("6:8", "`pace` needs a baud rate: write to = \"mpu@pty,115200\"")],
+    ),
+    (
+        gyro!("[[output]]\nto = \"mpu@/dev/ttyUSB0,115200\"\npace = true\n"),
+        &[("6:8", "`pace` is for a pty: a serial port takes its own time")],
+    ),
+    (
+        gyro!("[[output]]\nto = \"mpu@tcpin:4560\"\npace = true\n"),
+        &[("6:8", "`pace` is for a pty with a baud rate, not for `tcpin:127.0.0.1:4560`")],
+    ),
+    (
+        gyro!("[[output]]\nto = \"mpu@pty,115200\"\npace = \"yes\"\nforce = 1\n"),
+        &[("6:8", "`pace` is a string; write true or false"), ("7:9", "`force` is a|write true or false")],
+    ),
+    (
+        gyro!("[[output]]\nto = \"mpu@pty\"\noverload = \"drop-old\"\n"),
+        &[(
+            "6:12",
+            "takes drop-newest or drop-oldest or stretch, not `drop-old`; did you mean `drop-oldest`?",
+        )],
+    ),
+    (
+        gyro!("[[output]]\nto = \"mpu@pty,fast\"\n"),
+        &[("5:6", "`fast` is no speed in baud (50 to 20000000); say pty,921600")],
+    ),
+    (
         "seed = -1\nduration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\n",
         &[("1:8", "`seed` is -1; write a whole number from 0")],
     ),

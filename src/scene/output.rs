@@ -43,6 +43,35 @@ impl fmt::Display for Destination {
     }
 }
 
+/// What becomes of a packet that its link does not take when it is due.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Overload {
+    /// It is dropped. Whatever is sent is on time: a flight controller that stamps samples on arrival is never told
+    /// the past as the present, and nothing waits in the program.
+    #[default]
+    DropNewest,
+    /// It waits in a short queue until the link takes it; when the queue is full the oldest in it is dropped. After
+    /// a stall the other side gets the newest past, late.
+    DropOldest,
+    /// Scene time stands still, for every output, until the link takes it. Nothing is lost or late.
+    Stretch,
+}
+
+impl Overload {
+    /// As a scene spells them.
+    const NAMES: [&str; 3] = ["drop-newest", "drop-oldest", "stretch"];
+
+    /// As a scene spells it.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    fn from_name(name: &str) -> Overload {
+        let all = [Overload::DropNewest, Overload::DropOldest, Overload::Stretch];
+        all.into_iter().find(|policy| policy.name() == name).unwrap_or_default()
+    }
+}
+
 /// One output.
 #[derive(Clone, Debug)]
 pub struct Output {
@@ -50,12 +79,16 @@ pub struct Output {
     pub to: Destination,
     /// How the protocol lays its packets out.
     pub wire: wire::Options,
+    /// What becomes of a packet that the link does not take in time.
+    pub overload: Overload,
+    /// Whether to start although the baud rate does not carry the packets.
+    pub force: bool,
 }
 
 impl Output {
     /// An output of the command line: nothing but its destination.
     pub fn to(to: Destination) -> Output {
-        Output { to, wire: wire::Options::default() }
+        Output { to, wire: wire::Options::default(), overload: Overload::default(), force: false }
     }
 }
 
@@ -80,11 +113,14 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
             "burst" => Layout::Burst,
             _ => Layout::Separate,
         });
+    let overload = Overload::from_name(section.word("overload", &Overload::NAMES, Overload::NAMES[0]));
+    let force = section.flag("force").unwrap_or(false);
+    let pace = section.flag("pace");
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
     let to = section.text("to", None)?;
-    let to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
+    let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
     let wire = wire::Options { layout };
     if layout.is_some() && to.protocol != Protocol::Mpu {
         section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
@@ -92,5 +128,25 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     if let Some(Err(why)) = sensors.map(|sensors| wire::check(to.protocol, &wire, sensors)) {
         section.mistake("layout", why);
     }
-    Some(Output { to, wire })
+    match pace {
+        Some(true) => paced(section, &to),
+        Some(false) => to.address = to.address.unpaced(),
+        None => {}
+    }
+    Some(Output { to, wire, overload, force })
+}
+
+/// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.
+fn paced(section: &Section<'_>, to: &Destination) {
+    let example = || Destination { protocol: to.protocol, address: to.address.clone().at_baud(115_200) };
+    match to.address {
+        Address::Pty { baud: Some(_), .. } => {}
+        Address::Pty { .. } => {
+            section.mistake("pace", format!("needs a baud rate: write to = \"{}\"", example()))
+        }
+        Address::Serial { .. } => {
+            section.mistake("pace", "is for a pty: a serial port takes its own time; leave it out")
+        }
+        _ => section.mistake("pace", format!("is for a pty with a baud rate, not for `{}`", to.address)),
+    }
 }

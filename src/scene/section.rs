@@ -197,6 +197,23 @@ impl<'r> Section<'r> {
         })
     }
 
+    /// True or false, if it is given.
+    pub fn flag(&self, key: &'static str) -> Option<bool> {
+        match &self.entry(key)?.node.value {
+            Value::Boolean(flag) => {
+                self.resolve(key, *flag);
+                Some(*flag)
+            }
+            other => {
+                self.mistake(
+                    key,
+                    format!("is {}; write true or false, without quotation marks", other.what()),
+                );
+                None
+            }
+        }
+    }
+
     /// A whole number of at least 0, or the default.
     pub fn whole(&self, key: &'static str, default: u64) -> u64 {
         let number = match self.entry(key).map(|entry| &entry.node.value) {

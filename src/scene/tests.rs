@@ -459,6 +459,31 @@ fn outputs_and_limits_are_handed_on() {
 }
 
 #[test]
+fn an_output_says_how_it_is_paced_and_what_it_does_when_it_is_too_slow() {
+    let one = |keys: &str| plan(&format!("{SHORT}[[output]]\n{keys}")).outputs.remove(0);
+    let plain = one("to = \"mpu@pty,115200\"\n");
+    assert_eq!(
+        (plain.to.address.baud(), plain.overload, plain.force),
+        (Some(115_200), Overload::DropNewest, false)
+    );
+    assert_eq!(one("to = \"mpu@pty:/tmp/imu,115200\"\npace = true\n").to.address.baud(), Some(115_200));
+    let unpaced = one("to = \"mpu@pty:/tmp/imu,115200\"\npace = false\n");
+    assert_eq!(unpaced.to.to_string(), "mpu@pty:/tmp/imu");
+    let serial = one("to = \"mpu@/dev/ttyUSB0,115200\"\npace = false\nforce = true\n");
+    assert_eq!((serial.to.address.baud(), serial.force), (Some(115_200), true));
+    for (name, policy) in [
+        ("drop-newest", Overload::DropNewest),
+        ("drop-oldest", Overload::DropOldest),
+        ("stretch", Overload::Stretch),
+    ] {
+        let text = format!("{SHORT}[[output]]\nto = \"mpu@pty\"\noverload = \"{name}\"\n");
+        let read = plan(&text);
+        assert_eq!((read.outputs[0].overload, policy.name()), (policy, name));
+        assert_eq!(plan(&read.resolved).outputs[0].overload, policy, "written down and read again");
+    }
+}
+
+#[test]
 fn every_built_in_scene_loads_and_says_what_it_is() {
     for (name, text) in builtin::SCENES {
         let plan = Plan::load(name, &[]).unwrap_or_else(|error| panic!("{error}"));
@@ -493,7 +518,8 @@ fn every_key_that_is_listed_is_known() {
             _ => format!("[{table}]"),
         };
         let kind = if table == "[[motion]]" && *key != "kind" { "kind = \"hold\"\n" } else { "" };
-        let bad = format!("{table}\n{kind}{key} = true\n");
+        let value = if ["pace", "force"].contains(key) { "1" } else { "true" };
+        let bad = format!("{table}\n{kind}{key} = {value}\n");
         let rest: String =
             SHORT.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
         let text = if table.is_empty() { bad + &rest } else { rest + &bad };

@@ -61,7 +61,12 @@ impl Ear {
 
     /// From when the sample was due to now, in real time.
     fn delay_ms(&self, now: i64, t: SimTime) -> Option<f64> {
+        let stretched_at = self.shared.stretched_at_ns.load(Ordering::Relaxed);
         let start = self.shared.start_ns.load(Ordering::Relaxed);
+        if t.0 < stretched_at {
+            // Due by an earlier start than this one.
+            return None;
+        }
         match self.speed {
             Speed::Times(times) if start >= 0 => Some((now - start) as f64 / 1e6 - t.0 as f64 / 1e6 / times),
             _ => None,

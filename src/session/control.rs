@@ -1,7 +1,8 @@
 //! The control side of a run: opens links, waits for peers, starts the threads, listens, ends cleanly.
 
 use super::answers::{Ear, Heard};
-use super::pacer::Pacer;
+use super::links::{Account, LOOK, Lookout};
+use super::pacer::{Left, Pacer};
 use super::producer::{self, Made};
 use super::tally::{self, LinkTally};
 use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command};
@@ -10,7 +11,6 @@ use crate::link::Link;
 use crate::os;
 use crate::report::LinkReport;
 use crate::time::SimTime;
-use crate::wire;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -64,6 +64,7 @@ struct Run {
     absence: Duration,
     /// The link whose reader has left for good.
     left: Option<usize>,
+    lookout: Lookout,
 }
 
 /// What ended a wait.
@@ -122,8 +123,10 @@ impl Run {
         let heard = Heard { damaged: vec![0; job.outputs.len()], ..Heard::default() };
         let shared = Shared::default();
         shared.start_ns.store(-1, Ordering::Relaxed);
+        let lookout = Lookout::new(job.outputs.len());
         Run {
             job,
+            lookout,
             shared: Arc::new(shared),
             clock: WallClock::start(Pacing::default()),
             heard: Rc::new(RefCell::new(heard)),
@@ -163,7 +166,8 @@ impl Run {
         on(Event::Started);
         let senders = links.iter_mut().map(Link::sender).collect();
         self.listen(&mut links);
-        let pacer = Pacer::new(self.clock, consumer, senders, self.job.speed);
+        let policies = self.job.outputs.iter().map(|output| output.overload);
+        let pacer = Pacer::new(self.clock, consumer, senders, policies, self.job.speed);
         let (pacing, mut notices, mut done) = self.start_pacer(pacer)?;
         self.attend(on, &links, &mut signals, &mut program, &mut notices, &mut done).await;
         let (mut pacer, granted) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
@@ -262,12 +266,14 @@ impl Run {
             on(Event::Notice(notice));
         }
         let mut ticks = tokio::time::interval(PROGRESS);
+        let mut looks = tokio::time::interval(LOOK);
         // Paced, a packet that nobody reads is dropped and counted; and a command ends the run by ending.
         let waits = self.job.speed == Speed::Max && self.job.command.is_empty();
         let mut absence = Absence { packets: 0, since: Instant::now() };
         loop {
             tokio::select! {
                 _ = &mut *done => break,
+                _ = looks.tick() => self.lookout.look(links, |notice| on(Event::Notice(notice))),
                 _ = ticks.tick() => {
                     let progress = self.progress();
                     if waits && let Some(link) = absence.look(progress.packets, links, self.absence) {
@@ -286,6 +292,7 @@ impl Run {
                 }
             }
         }
+        self.lookout.look(links, |notice| on(Event::Notice(notice)));
         on(Event::Progress(self.progress()));
     }
 
@@ -299,15 +306,13 @@ impl Run {
     }
 
     /// Joins the producer, emptying the ring into the count of what was left while it ends.
-    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<WallClock>) -> (Made, [u64; 3]) {
+    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<WallClock>) -> (Made, Left) {
         self.shared.stop.store(true, Ordering::Relaxed);
-        let mut left = [0; 3];
+        let mut left = Left::nothing(self.job.outputs.len());
         loop {
             // Asked before emptying: what the producer pushed last is then in the ring.
             let over = producer.is_finished();
-            for (sum, more) in left.iter_mut().zip(pacer.left()) {
-                *sum += more;
-            }
+            left += pacer.left();
             if over {
                 break;
             }
@@ -324,7 +329,9 @@ impl Run {
                 gone.get_or_insert(error.kind());
             }
         }
-        let (tallies, gone) = (pacer.tallies, pacer.gone);
+        let (mut tallies, gone, stretched) = (pacer.tallies, pacer.gone, pacer.stretched);
+        let now = self.clock.now();
+        tallies.iter_mut().for_each(|tally| tally.gaps.end(now));
         drop(pacer.senders);
         if !self.heard.borrow().estimates.is_empty() {
             tokio::time::sleep(LAST_ANSWERS).await;
@@ -347,16 +354,17 @@ impl Run {
         let kinds = [0, 1, 2];
         let sum = |rows: &[[u64; 3]]| kinds.map(|i| rows.iter().map(|row| row[i]).sum::<u64>());
         let (total, waiting) = (sum(&made.samples), sum(&made.waiting));
-        let queued = kinds.map(|i| left[i] + waiting[i]);
+        let queued = kinds.map(|i| left.samples[i] + waiting[i]);
         let paced = self.job.speed != Speed::Max;
         let heard = self.heard.borrow();
         Ok(Outcome {
             played: self.played(&gone),
             interrupted: self.interrupted,
+            stretched_s: stretched as f64 * 1e-9,
             realtime: granted.priority,
             memory_locked: granted.memory,
             sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
-            links: self.link_reports(&tallies, &gone, names),
+            links: self.link_reports(&tallies, &gone, names, &made, &left),
             score: heard.scorer.score(&self.job.estimator),
             estimates: heard.estimates.clone(),
             command,
@@ -377,36 +385,12 @@ impl Run {
         tallies: &[LinkTally],
         gone: &[Option<std::io::ErrorKind>],
         names: Vec<String>,
+        made: &Made,
+        left: &Left,
     ) -> Vec<LinkReport> {
-        let damaged = self.heard.borrow().damaged.clone();
-        let per_link = self.job.outputs.iter().zip(tallies).zip(gone).zip(names).zip(damaged);
-        per_link
-            .enumerate()
-            .map(|(i, ((((output, tally), gone), name), damaged))| LinkReport {
-                to: output.to.to_string(),
-                name,
-                packets: tally.packets,
-                bytes: tally.bytes,
-                dropped: tally.dropped,
-                utilisation: self.utilisation(output),
-                crc_errors: damaged,
-                lost_seq: None,
-                broken: match gone {
-                    _ if self.left == Some(i) => Some("the reader left".into()),
-                    gone => gone.map(|kind| kind.to_string()),
-                },
-            })
-            .collect()
-    }
-
-    /// Bytes a second against what the baud rate carries with one start and one stop bit.
-    fn utilisation(&self, output: &crate::scene::Output) -> Option<f64> {
-        let baud = output.to.address.baud()?;
-        let plan = &self.job.plan;
-        let setup =
-            wire::Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire };
-        let (bytes, _) = wire::load(output.to.protocol, &setup);
-        Some(bytes / (f64::from(baud) / 10.0))
+        let damaged = &self.heard.borrow().damaged;
+        let (outputs, lookout, abandoned) = (&self.job.outputs, &self.lookout, self.left);
+        Account { outputs, names, tallies, gone, made, left, lookout, damaged, abandoned }.reports()
     }
 
     fn never_started(&self, names: Vec<String>) -> Outcome {
@@ -415,10 +399,11 @@ impl Run {
         Outcome {
             played: SimTime::ZERO,
             interrupted: self.interrupted,
+            stretched_s: 0.0,
             realtime: false,
             memory_locked: false,
             sensors: tally::sensors(&self.job.plan, &tallies, [0; 3], [0; 3], false),
-            links: self.link_reports(&tallies, &gone, names),
+            links: self.link_reports(&tallies, &gone, names, &Made::default(), &Left::nothing(gone.len())),
             score: None,
             estimates: Vec::new(),
             command: self.ended,
@@ -433,8 +418,8 @@ struct Ended {
     program: Program,
     names: Vec<String>,
     granted: Granted,
-    /// Samples made, and those left in the ring.
-    made: (Made, [u64; 3]),
+    /// What was made, and what of it is left.
+    made: (Made, Left),
 }
 
 type Paced =

@@ -1,9 +1,12 @@
-//! The pacing thread: takes the next packet, waits until it is due, writes it, counts. Nothing else.
+//! The pacing thread: takes the next packet, waits until it is due, writes it, counts. Nothing else; what is not
+//! taken in time is the business of `overload`.
 
+use super::overload::{Due, Queue, RETRY};
 use super::tally::LinkTally;
 use super::{Item, Shared};
 use crate::clock::Clock;
 use crate::link::{Sender, Sent};
+use crate::scene::Overload;
 use crate::wire::Packet;
 use rtrb::Consumer;
 use std::sync::atomic::Ordering;
@@ -32,33 +35,83 @@ pub(super) struct Pacer<C> {
     /// Why a link takes nothing any more.
     pub gone: Vec<Option<std::io::ErrorKind>>,
     pub speed: Speed,
+    /// What is not sent yet, by output.
+    pub queues: Vec<Queue>,
+    /// Scene time 0 on its clock, ns.
+    pub start: i64,
+    /// For how long scene time stood still, ns: `start` has moved by as much.
+    pub stretched: i64,
+}
+
+/// What was made and neither sent nor dropped.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Left {
+    /// Samples, of each kind.
+    pub samples: [u64; 3],
+    /// Packets, of each output.
+    pub packets: Vec<u64>,
+}
+
+impl Left {
+    pub(super) fn nothing(outputs: usize) -> Left {
+        Left { samples: [0; 3], packets: vec![0; outputs] }
+    }
+
+    fn add(&mut self, output: usize, packet: &Packet) {
+        self.packets[output] += 1;
+        for (i, samples) in self.samples.iter_mut().enumerate() {
+            *samples += u64::from(packet.carries >> i & 1) + u64::from(packet.replaced[i]);
+        }
+    }
+}
+
+impl std::ops::AddAssign for Left {
+    fn add_assign(&mut self, more: Left) {
+        self.samples.iter_mut().zip(more.samples).for_each(|(sum, more)| *sum += more);
+        self.packets.iter_mut().zip(more.packets).for_each(|(sum, more)| *sum += more);
+    }
 }
 
 impl<C: Clock> Pacer<C> {
-    pub(super) fn new(clock: C, ring: Consumer<Item>, senders: Vec<Sender>, speed: Speed) -> Pacer<C> {
+    /// One sender and one policy an output.
+    pub(super) fn new(
+        clock: C,
+        ring: Consumer<Item>,
+        senders: Vec<Sender>,
+        policies: impl IntoIterator<Item = Overload>,
+        speed: Speed,
+    ) -> Pacer<C> {
         let tallies = senders.iter().map(|_| LinkTally::new()).collect();
         let gone = vec![None; senders.len()];
-        Pacer { clock, ring, senders, tallies, gone, speed }
+        let queues = policies.into_iter().map(Queue::new).collect();
+        Pacer { clock, ring, senders, tallies, gone, speed, queues, start: 0, stretched: 0 }
     }
 
     /// Sends everything, scene time 0 being at `start` (ns on its clock), until the ring has ended or all stops.
     pub(super) fn run(&mut self, start: i64, shared: &Shared) {
+        self.start = start;
         shared.start_ns.store(start, Ordering::Relaxed);
         while !shared.stopped() && self.gone.contains(&None) {
+            let look_up = if self.something_waits() {
+                self.send_all_waiting(shared);
+                RETRY
+            } else {
+                LOOK_UP
+            };
             let Ok(item) = self.ring.peek() else {
                 if shared.all_made.load(Ordering::Acquire) && self.ring.is_empty() {
-                    return;
+                    return self.settle(shared);
                 }
                 std::thread::sleep(EMPTY);
                 continue;
             };
             let due = match self.speed {
-                Speed::Times(1.0) => start + item.packet.due.0,
-                Speed::Times(times) => start + (item.packet.due.0 as f64 / times) as i64,
+                Speed::Times(1.0) => self.start + item.packet.due.0,
+                Speed::Times(times) => self.start + (item.packet.due.0 as f64 / times) as i64,
                 Speed::Max => i64::MIN,
             };
-            if due > self.clock.now() + LOOK_UP {
-                let soon = self.clock.now() + LOOK_UP;
+            if due > self.clock.now() + look_up {
+                let soon = self.clock.now() + look_up;
                 self.clock.wait_until(soon);
                 continue;
             }
@@ -67,48 +120,55 @@ impl<C: Clock> Pacer<C> {
             if due != i64::MIN {
                 self.clock.wait_until(due);
             }
-            self.send(output, &packet, due, shared);
+            self.deliver(output, Due { packet, due }, shared);
+            shared.scene_ns.store(packet.due.0, Ordering::Relaxed);
         }
     }
 
-    fn send(&mut self, output: usize, packet: &Packet, due: i64, shared: &Shared) {
+    /// Writes a packet, and counts it if the link took it.
+    pub(super) fn attempt(&mut self, output: usize, it: &Due, shared: &Shared) -> Sent {
+        let Due { packet, due } = it;
         let before = self.clock.now();
         let sent = match self.speed {
-            _ if self.gone[output].is_some() => Sent::Full,
             Speed::Max => self.senders[output].send_all(packet.bytes(), &shared.stop),
             Speed::Times(_) => self.senders[output].send(packet.bytes()),
         };
-        let after = self.clock.now();
-        let done = sent == Sent::Done;
-        if let Sent::Gone(kind) = sent {
-            self.gone[output] = Some(kind);
-        }
         let tally = &mut self.tallies[output];
-        let late = if due == i64::MIN { 0 } else { before - due };
-        for (i, sensor) in tally.sensors.iter_mut().enumerate() {
-            let mut lost = u64::from(packet.replaced[i]);
-            match (packet.carries >> i & 1 == 1, done) {
-                (true, true) => sensor.sent(before, late, after - before),
-                (true, false) => lost += 1,
-                (false, _) => {}
+        match sent {
+            Sent::Done => {
+                let late = if *due == i64::MIN { 0 } else { before - due };
+                tally.sent(packet, before, late, self.clock.now() - before);
+                shared.packets.fetch_add(1, Ordering::Relaxed);
+                self.forget_replaced(output, packet, shared);
             }
-            sensor.dropped += lost;
-            shared.dropped.fetch_add(lost, Ordering::Relaxed);
+            Sent::Away => tally.gaps.begin(before),
+            Sent::Gone(kind) => self.gone[output] = Some(kind),
+            Sent::Full => {}
         }
-        tally.packets += u64::from(done);
-        tally.bytes += if done { packet.bytes().len() as u64 } else { 0 };
-        tally.dropped += u64::from(!done);
-        shared.packets.fetch_add(u64::from(done), Ordering::Relaxed);
-        shared.scene_ns.store(packet.due.0, Ordering::Relaxed);
+        sent
     }
 
-    /// Samples left in the ring, of each kind: made, but neither sent nor dropped.
-    pub(super) fn left(&mut self) -> [u64; 3] {
-        let mut left = [0; 3];
+    /// Counts a packet as dropped.
+    pub(super) fn lose(&mut self, output: usize, packet: &Packet, shared: &Shared) {
+        let lost = self.tallies[output].dropped(packet);
+        shared.dropped.fetch_add(lost, Ordering::Relaxed);
+        self.forget_replaced(output, packet, shared);
+    }
+
+    /// Samples that newer ones replaced before this packet are dropped, whatever becomes of it.
+    fn forget_replaced(&mut self, output: usize, packet: &Packet, shared: &Shared) {
+        let lost = self.tallies[output].replaced(packet);
+        shared.dropped.fetch_add(lost, Ordering::Relaxed);
+    }
+
+    /// What is left in the ring and in the queues: made, but neither sent nor dropped.
+    pub(super) fn left(&mut self) -> Left {
+        let mut left = Left::nothing(self.senders.len());
+        for (output, queue) in self.queues.iter_mut().enumerate() {
+            queue.drain().for_each(|packet| left.add(output, &packet));
+        }
         while let Ok(item) = self.ring.pop() {
-            for (i, left) in left.iter_mut().enumerate() {
-                *left += u64::from(item.packet.carries >> i & 1) + u64::from(item.packet.replaced[i]);
-            }
+            left.add(item.output, &item.packet);
         }
         left
     }

@@ -12,11 +12,13 @@ use std::time::Duration;
 /// How long to wait when the ring is full: far less than it holds.
 const FULL: Duration = Duration::from_micros(200);
 
-/// Samples made, and made but still waiting in an encoder for a packet: of each output, by sensor kind.
+/// Samples made, and made but still waiting in an encoder for a packet: of each output, by sensor kind. And packets
+/// made of them, of each output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Made {
     pub samples: Vec<[u64; 3]>,
     pub waiting: Vec<[u64; 3]>,
+    pub packets: Vec<u64>,
 }
 
 /// Everything stopped before the end.
@@ -41,6 +43,7 @@ pub(super) fn produce(
     let mut maker = Maker {
         samples: vec![[0; 3]; outputs.len()],
         encoders,
+        made: vec![0; outputs.len()],
         packets: Vec::new(),
         items: Vec::new(),
         ring,
@@ -51,12 +54,13 @@ pub(super) fn produce(
     let _ = player.play(|moment| maker.make(moment.t, moment.readings));
     shared.all_made.store(true, Ordering::Release);
     let waiting = maker.encoders.iter().map(|encoder| encoder.waiting()).collect();
-    Made { samples: maker.samples, waiting }
+    Made { samples: maker.samples, waiting, packets: maker.made }
 }
 
 struct Maker<'a> {
     encoders: Vec<Box<dyn Encoder>>,
     samples: Vec<[u64; 3]>,
+    made: Vec<u64>,
     packets: Vec<Packet>,
     items: Vec<Item>,
     ring: Producer<Item>,
@@ -75,6 +79,7 @@ impl Maker<'_> {
             }
             self.packets.clear();
             encoder.encode(t, readings, &mut self.packets);
+            self.made[output] += self.packets.len() as u64;
             self.items.extend(self.packets.iter().map(|&packet| Item { output, packet }));
         }
         if self.encoders.len() > 1 {

@@ -3,6 +3,7 @@
 use crate::report::{Interval, Late, SensorReport, Spread};
 use crate::scene::Plan;
 use crate::sensor::SensorKind;
+use crate::wire::Packet;
 use hdrhistogram::Histogram;
 
 /// The longest time told apart, ns; longer ones count as this.
@@ -50,6 +51,19 @@ impl SensorTally {
     }
 }
 
+#[cfg(test)]
+impl SensorTally {
+    /// How many times lateness was recorded.
+    pub(super) fn lateness_count(&self) -> u64 {
+        self.late.len()
+    }
+
+    /// The greatest lateness, ns, within the histogram's 0.1 %.
+    pub(super) fn latest_ns(&self) -> i64 {
+        self.late.max() as i64
+    }
+}
+
 /// One link.
 #[derive(Clone, Debug)]
 pub(super) struct LinkTally {
@@ -57,11 +71,99 @@ pub(super) struct LinkTally {
     pub bytes: u64,
     pub dropped: u64,
     pub sensors: [SensorTally; 3],
+    pub gaps: Gaps,
+    /// When its first and its last packet were sent, ns, and the bytes of the last.
+    first: i64,
+    last: i64,
+    last_bytes: u64,
 }
 
 impl LinkTally {
     pub(super) fn new() -> LinkTally {
-        LinkTally { packets: 0, bytes: 0, dropped: 0, sensors: [0; 3].map(|_| SensorTally::new()) }
+        LinkTally {
+            packets: 0,
+            bytes: 0,
+            dropped: 0,
+            sensors: [0; 3].map(|_| SensorTally::new()),
+            gaps: Gaps::default(),
+            first: 0,
+            last: 0,
+            last_bytes: 0,
+        }
+    }
+
+    /// Counts a packet as sent at `now`, `late` ns after it was due, in a call of `write` ns.
+    pub(super) fn sent(&mut self, packet: &Packet, now: i64, late: i64, write: i64) {
+        self.gaps.end(now);
+        if self.packets == 0 {
+            self.first = now;
+        }
+        (self.last, self.last_bytes) = (now, packet.bytes().len() as u64);
+        self.packets += 1;
+        self.bytes += self.last_bytes;
+        let sensors = self.sensors.iter_mut().enumerate();
+        for (_, sensor) in sensors.filter(|(i, _)| packet.carries >> i & 1 == 1) {
+            sensor.sent(now, late, write);
+        }
+    }
+
+    /// Counts a packet as dropped; how many samples that is.
+    pub(super) fn dropped(&mut self, packet: &Packet) -> u64 {
+        let sensors = self.sensors.iter_mut().enumerate();
+        let lost =
+            sensors.filter(|(i, _)| packet.carries >> i & 1 == 1).map(|(_, sensor)| sensor.dropped += 1);
+        let samples = lost.count() as u64;
+        self.dropped += 1;
+        if self.gaps.since.is_some() {
+            self.gaps.dropped += 1;
+            self.gaps.samples += samples;
+        }
+        samples
+    }
+
+    /// Counts the samples as dropped that newer ones replaced before this packet; how many.
+    pub(super) fn replaced(&mut self, packet: &Packet) -> u64 {
+        let pairs = self.sensors.iter_mut().zip(packet.replaced);
+        pairs
+            .map(|(sensor, replaced)| {
+                sensor.dropped += u64::from(replaced);
+                u64::from(replaced)
+            })
+            .sum()
+    }
+
+    /// Bytes a second between its first and its last packet; `None` before there are two.
+    pub(super) fn bytes_per_s(&self) -> Option<f64> {
+        let span = (self.last - self.first) as f64 * 1e-9;
+        (span > 0.0).then(|| (self.bytes - self.last_bytes) as f64 / span)
+    }
+}
+
+/// When a port was pulled out.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Gaps {
+    pub count: u64,
+    pub total_ns: i64,
+    /// Packets dropped meanwhile, and the samples in them.
+    pub dropped: u64,
+    pub samples: u64,
+    since: Option<i64>,
+}
+
+impl Gaps {
+    /// The port was found gone.
+    pub(super) fn begin(&mut self, now: i64) {
+        if self.since.is_none() {
+            self.since = Some(now);
+            self.count += 1;
+        }
+    }
+
+    /// It took a packet again, or nothing more is to be sent.
+    pub(super) fn end(&mut self, now: i64) {
+        if let Some(since) = self.since.take() {
+            self.total_ns += now - since;
+        }
     }
 }
 

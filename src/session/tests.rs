@@ -4,13 +4,14 @@ use super::*;
 use crate::clock::VirtualClock;
 use crate::link::{self, Far, Sender};
 use crate::player::Player;
+use crate::scene::Overload;
 use crate::wire::{self, Protocol, Setup};
 use std::convert::Infallible;
 
 /// 1 kHz gyro and accel, 100 Hz mag, for a second.
 const SCENE: &str = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";
 
-fn plan(text: &str) -> Plan {
+pub(super) fn plan(text: &str) -> Plan {
     Plan::parse(text, "test", "test", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -25,7 +26,7 @@ fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) 
     (consumer, made)
 }
 
-fn memory(capacity: usize) -> (Sender, Far) {
+pub(super) fn memory(capacity: usize) -> (Sender, Far) {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     let _inside = runtime.enter();
     let (mut link, far) = link::memory(capacity);
@@ -37,9 +38,11 @@ fn accounts_balance(made: &Made, pacer: &mut Pacer<VirtualClock>) {
     let left = pacer.left();
     for kind in 0..3 {
         let tally = &pacer.tallies[0].sensors[kind];
-        let queued = left[kind] + made.waiting[0][kind];
+        let queued = left.samples[kind] + made.waiting[0][kind];
         assert_eq!(made.samples[0][kind], tally.sent + tally.dropped + queued, "kind {kind}");
     }
+    let tally = &pacer.tallies[0];
+    assert_eq!(made.packets[0], tally.packets + tally.dropped + left.packets[0], "packets");
 }
 
 #[test]
@@ -49,7 +52,7 @@ fn lateness_is_what_the_clock_did_and_everything_is_sent() {
     let (sender, mut far) = memory(1 << 20);
     // Every fourth wake-up is 30 µs late.
     let clock = VirtualClock::waking_late([0, 0, 0, 30_000]);
-    let mut pacer = Pacer::new(clock, ring, vec![sender], Speed::Times(1.0));
+    let mut pacer = Pacer::new(clock, ring, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
     pacer.run(1_000_000, &shared);
     accounts_balance(&made, &mut pacer);
     assert_eq!(made.samples[0], [1000, 1000, 100]);
@@ -72,7 +75,13 @@ fn scene_time_goes_as_fast_as_asked() {
         let (plan, shared) = (plan(SCENE), Shared::default());
         let (ring, _) = made(&plan, "mpu@pty", &shared);
         let (sender, _far) = memory(1 << 20);
-        let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Times(times));
+        let mut pacer = Pacer::new(
+            VirtualClock::default(),
+            ring,
+            vec![sender],
+            [Overload::DropNewest],
+            Speed::Times(times),
+        );
         pacer.run(0, &shared);
         let report = &tally::sensors(&plan, &pacer.tallies, [0; 3], [0; 3], true)[0];
         assert!((report.sent_hz.unwrap() / 1000.0 - times).abs() < 1e-6 * times, "{times}");
@@ -85,7 +94,8 @@ fn a_reader_that_stops_and_resumes_costs_exactly_what_is_counted() {
     let (plan, shared) = (plan(SCENE), Shared::default());
     let (ring, made) = made(&plan, "mpu@pty", &shared);
     let (sender, mut far) = memory(4096);
-    let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Times(1.0));
+    let mut pacer =
+        Pacer::new(VirtualClock::default(), ring, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
     pacer.run(0, &shared);
     accounts_balance(&made, &mut pacer);
     let tally = &pacer.tallies[0];
@@ -104,10 +114,11 @@ fn a_link_that_goes_away_ends_the_run_and_the_rest_counts_as_queued() {
     let (ring, made) = made(&plan, "mpu@pty", &shared);
     let (sender, mut far) = memory(1 << 20);
     far.leave();
-    let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Times(1.0));
+    let mut pacer =
+        Pacer::new(VirtualClock::default(), ring, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
     pacer.run(0, &shared);
     assert!(pacer.gone[0].is_some());
-    assert!(pacer.left()[0] > 0, "the rest is left");
+    assert!(pacer.left().samples[0] > 0, "the rest is left");
     let (ring, made_again) = self::made(&plan, "mpu@pty", &shared);
     assert_eq!(made, made_again);
     pacer.ring = ring;
@@ -127,7 +138,8 @@ fn samples_that_newer_ones_replace_are_counted_as_dropped() {
     );
     let (ring, made) = made(&plan, "mavlink@pty", &shared);
     let (sender, _far) = memory(1 << 20);
-    let mut pacer = Pacer::new(VirtualClock::default(), ring, vec![sender], Speed::Max);
+    let mut pacer =
+        Pacer::new(VirtualClock::default(), ring, vec![sender], [Overload::DropNewest], Speed::Max);
     pacer.run(0, &shared);
     let accel = &pacer.tallies[0].sensors[1];
     // Message k carries the newest of ten; the nine after the last message wait for one that never comes.
@@ -147,7 +159,7 @@ fn the_pacing_thread_allocates_nothing() {
         let address = format!("file:{}", file.path().display()).parse().unwrap();
         let mut link = runtime.block_on(link::Link::open(&address)).unwrap();
         let clock = VirtualClock::waking_late([0, 5_000]);
-        let mut pacer = Pacer::new(clock, ring, vec![link.sender()], speed);
+        let mut pacer = Pacer::new(clock, ring, vec![link.sender()], [Overload::DropNewest], speed);
         let counted = allocation_counter::measure(|| pacer.run(0, &shared));
         assert!(pacer.tallies[0].packets > 1000);
         assert_eq!(counted.count_total, 0, "{to}");

@@ -1,11 +1,11 @@
 //! The plan for a program.
 
-use super::{noise, setup, terms, warnings};
+use super::{budgets, noise, terms, warnings};
+use crate::earth;
 use crate::effects::effects;
 use crate::motion::method::Choice;
 use crate::scene::{Plan, Reference};
 use crate::sensor::{Sampling, lsb};
-use crate::{earth, wire};
 use serde_json::{Value, json};
 
 pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>) -> Value {
@@ -27,10 +27,18 @@ pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
             "terms": terms(plan, sensor),
         })
     });
-    let links = plan.outputs.iter().map(|output| {
-        let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
-        let capacity = output.to.address.baud().map(|baud| f64::from(baud) / 10.0);
-        json!({ "to": output.to.to_string(), "packets_per_s": packets, "bytes_per_s": bytes, "capacity_bytes_per_s": capacity })
+    let links = plan.outputs.iter().zip(budgets(plan)).map(|(output, budget)| {
+        json!({
+            "to": budget.to.to_string(),
+            "packets_per_s": budget.packets_per_s,
+            "bytes_per_s": budget.bytes_per_s,
+            "capacity_bytes_per_s": budget.capacity,
+            "utilisation": budget.share(),
+            "fits": budget.fits(),
+            "ways_out": budget.ways_out,
+            "overload": output.overload.name(),
+            "force": output.force,
+        })
     });
     json!({
         "version": env!("CARGO_PKG_VERSION"),

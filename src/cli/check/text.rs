@@ -1,13 +1,13 @@
 //! The plan for a person.
 
 use super::effects;
-use super::{Noise, noise, setup, shown, terms, warnings};
+use super::{Noise, budgets, noise, shown, terms, warnings};
+use crate::earth;
 use crate::motion::method::Choice;
 use crate::report::{number, table};
 use crate::scene::{Plan, Reference};
 use crate::sensor::{Sampling, SensorPlan, lsb};
 use crate::time::SimTime;
-use crate::{earth, wire};
 
 pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>) -> String {
     let mut text = heading(plan);
@@ -116,14 +116,9 @@ fn manner(sensor: &SensorPlan) -> String {
 }
 
 fn outputs(plan: &Plan) -> String {
-    let rows = plan.outputs.iter().map(|output| {
-        let (bytes, packets) = wire::load(output.to.protocol, &setup(plan, output));
-        let share = output
-            .to
-            .address
-            .baud()
-            .map_or("-".into(), |baud| format!("{:.0} %", 1000.0 * bytes / f64::from(baud)));
-        vec![output.to.to_string(), number(packets), number(bytes), share]
+    let rows = budgets(plan).into_iter().map(|budget| {
+        let share = budget.share().map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
+        vec![budget.to.to_string(), number(budget.packets_per_s), number(budget.bytes_per_s), share]
     });
     table(&["output", "packets/s", "bytes/s", "of baud rate"], &rows.collect::<Vec<_>>())
 }

@@ -1,0 +1,252 @@
+//! The link budget: bytes a second that an output needs against what its baud rate carries.
+
+use crate::link::{Address, STANDARD_BAUDS, bytes_per_second};
+use crate::report::number;
+use crate::scene::{Destination, Output, Overload, Plan};
+use crate::sensor::SensorPlan;
+use crate::time::Rate;
+use crate::wire::{self, Layout, Protocol, Setup};
+use std::fmt;
+
+/// What an output asks of its link, and what the link has.
+///
+/// Eight data bits, no parity and one stop bit take ten bits a byte with their start bit, so a baud rate carries a
+/// tenth of it in bytes a second. What is needed is found by encoding ten seconds of the scene's own ticks.
+#[derive(Clone, Debug)]
+pub struct Budget {
+    /// The output as it was asked for.
+    pub to: Destination,
+    /// Packets a second.
+    pub packets_per_s: f64,
+    /// Their bytes.
+    pub bytes_per_s: f64,
+    /// Bytes a second that the baud rate carries, where there is one.
+    pub capacity: Option<f64>,
+    /// What would fit, a sentence each with its number; empty where all fits.
+    pub ways_out: Vec<String>,
+}
+
+impl Budget {
+    /// Of one output of a plan that is played at `speed` scene seconds a second.
+    pub fn of(plan: &Plan, output: &Output, speed: f64) -> Budget {
+        let load = |sensors: &[SensorPlan], protocol: Protocol, options: wire::Options| {
+            let (bytes, packets) =
+                wire::load(protocol, &Setup { sensors, axes: plan.axes, day: plan.day, options });
+            (bytes * speed, packets * speed)
+        };
+        let (bytes_per_s, packets_per_s) = load(&plan.sensors, output.to.protocol, output.wire);
+        let capacity = output.to.address.baud().map(bytes_per_second);
+        let mut budget =
+            Budget { to: output.to.clone(), packets_per_s, bytes_per_s, capacity, ways_out: Vec::new() };
+        if let Some(capacity) = capacity.filter(|_| !budget.fits()) {
+            let ways = Ways { plan, output, capacity, needed: bytes_per_s, load: &load };
+            budget.ways_out = ways.all();
+        }
+        budget
+    }
+
+    /// Of every output.
+    pub fn all(plan: &Plan, outputs: &[Output], speed: f64) -> Vec<Budget> {
+        outputs.iter().map(|output| Budget::of(plan, output, speed)).collect()
+    }
+
+    /// The needed part of what the link carries.
+    pub fn share(&self) -> Option<f64> {
+        self.capacity.map(|capacity| self.bytes_per_s / capacity)
+    }
+
+    /// Whether the link carries it.
+    pub fn fits(&self) -> bool {
+        self.share().is_none_or(|share| share <= 1.0)
+    }
+
+    /// What it needs and what the link carries, in a line.
+    pub fn arithmetic(&self) -> String {
+        let (packets, bytes) = (number(self.packets_per_s), number(self.bytes_per_s));
+        let needs = format!("{} needs {bytes} bytes/s ({packets} packets/s)", self.to);
+        match (self.to.address.baud(), self.capacity, self.share()) {
+            (Some(baud), Some(capacity), Some(share)) => format!(
+                "{needs}, and {baud} baud carries {} (8N1: {baud}/10), so that is {:.0} % of it",
+                number(capacity),
+                100.0 * share
+            ),
+            _ => needs,
+        }
+    }
+}
+
+impl fmt::Display for Budget {
+    /// The arithmetic, then each way out in a line of its own.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.arithmetic())?;
+        self.ways_out.iter().try_for_each(|way| write!(f, "\n  - {way}"))
+    }
+}
+
+/// Looks for what would fit.
+struct Ways<'a, L> {
+    plan: &'a Plan,
+    output: &'a Output,
+    capacity: f64,
+    needed: f64,
+    /// Bytes and packets a second of these sensors so sent.
+    load: &'a L,
+}
+
+impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
+    fn all(&self) -> Vec<String> {
+        let mut ways: Vec<_> = self.lower_rate().into_iter().collect();
+        ways.extend(self.other_packets());
+        ways.push(self.higher_baud());
+        if self.output.overload != Overload::Stretch {
+            let times = self.needed / self.capacity;
+            ways.push(format!(
+                "lose nothing and take {} times as long: overload = \"stretch\" in [[output]]",
+                number(times)
+            ));
+        }
+        ways.push(
+            "start in spite of it, and lose what does not fit: --force, or force = true in [[output]]".into(),
+        );
+        ways
+    }
+
+    /// The highest whole rate in Hz to which the faster sensors can be slowed down.
+    fn lower_rate(&self) -> Option<String> {
+        let at = |hz: u32| {
+            let mut sensors = self.plan.sensors.clone();
+            for sensor in sensors.iter_mut().filter(|sensor| sensor.rate.as_hz() > f64::from(hz)) {
+                sensor.rate = Rate::hz(hz);
+            }
+            (self.load)(&sensors, self.output.to.protocol, self.output.wire).0
+        };
+        let fastest = self.plan.sensors.iter().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+        let (mut fits, mut not) = (0, fastest.ceil() as u32);
+        while not - fits > 1 {
+            let hz = fits + (not - fits) / 2;
+            *(if at(hz) <= self.capacity { &mut fits } else { &mut not }) = hz;
+        }
+        let slowed: Vec<_> =
+            self.plan.sensors.iter().filter(|sensor| sensor.rate.as_hz() > f64::from(fits)).collect();
+        let sets: Vec<_> =
+            slowed.iter().map(|sensor| format!("--set {}.rate='{fits} Hz'", sensor.kind)).collect();
+        (fits > 0).then(|| format!("a lower rate: {} needs {} bytes/s", sets.join(" "), number(at(fits))))
+    }
+
+    /// Each other layout and protocol that fits, or that none does.
+    fn other_packets(&self) -> Vec<String> {
+        let here = self.output.to.protocol;
+        let mut others = Vec::new();
+        let layouts = [(Layout::Separate, "separate"), (Layout::Burst, "burst")];
+        for (layout, name) in layouts.into_iter().filter(|_| here == Protocol::Mpu) {
+            let options = wire::Options { layout: Some(layout) };
+            if wire::check(here, &options, &self.plan.sensors).is_ok() {
+                others.push((format!("layout = \"{name}\""), self.bytes(here, options)));
+            }
+        }
+        for protocol in Protocol::ALL.into_iter().filter(|protocol| *protocol != here) {
+            others.push((protocol.name().into(), self.bytes(protocol, wire::Options::default())));
+        }
+        // What the output sends already is no other.
+        others.retain(|(_, bytes)| *bytes != self.needed);
+        others.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let say = |(what, bytes): &(String, f64)| format!("{what} needs {} bytes/s", number(*bytes));
+        let fitting: Vec<_> = others.iter().filter(|(_, bytes)| *bytes <= self.capacity).map(say).collect();
+        if !fitting.is_empty() {
+            return fitting.iter().map(|what| format!("other packets: {what}")).collect();
+        }
+        let none: Vec<_> = others.iter().map(say).collect();
+        vec![format!("no other packets: {}", none.join(", "))]
+    }
+
+    fn bytes(&self, protocol: Protocol, options: wire::Options) -> f64 {
+        (self.load)(&self.plan.sensors, protocol, options).0
+    }
+
+    /// What a baud rate means to a device that is USB all the way.
+    fn usb(&self) -> &'static str {
+        match &self.output.to.address {
+            Address::Serial { path, .. } if path.to_string_lossy().contains("ttyACM") => {
+                " (a USB device of this kind usually takes any, and runs at the speed of USB)"
+            }
+            _ => "",
+        }
+    }
+
+    /// The next standard speed that carries it.
+    fn higher_baud(&self) -> String {
+        let next = STANDARD_BAUDS.iter().find(|baud| bytes_per_second(**baud) >= self.needed);
+        match next {
+            Some(&baud) => {
+                let to = Destination {
+                    protocol: self.output.to.protocol,
+                    address: self.output.to.address.clone().at_baud(baud),
+                };
+                let (carried, usb) = (bytes_per_second(baud), self.usb());
+                format!(
+                    "a higher baud rate: {to} carries {} bytes/s, {:.0} % of it needed{usb}",
+                    number(carried),
+                    100.0 * self.needed / carried
+                )
+            }
+            None => format!(
+                "no standard baud rate carries it: it takes {} baud",
+                number((self.needed * 10.0).ceil())
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn budget(scene: &str, output: &str, speed: f64) -> Budget {
+        let text = format!("duration = \"1 s\"\n{scene}[[output]]\n{output}");
+        let plan = Plan::parse(&text, "test", "test", &[]).unwrap_or_else(|error| panic!("{error}"));
+        Budget::of(&plan, &plan.outputs[0], speed)
+    }
+
+    const BOTH: &str = "[gyro]\nrate = \"1 kHz\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";
+
+    #[test]
+    fn what_is_needed_is_what_packet_lengths_give_by_hand() {
+        // 24 bytes an imu packet, 18 a mag, 20 a config a second.
+        let by_hand = 1000.0 * 24.0 + 100.0 * 18.0 + 20.0;
+        for (to, speed, capacity) in [
+            ("to = \"mpu@/dev/ttyUSB0,460800\"\n", 1.0, Some(46_080.0)),
+            ("to = \"mpu@pty,258200\"\n", 1.0, Some(by_hand)),
+            ("to = \"mpu@/dev/ttyUSB0\"\n", 3.0, Some(92_160.0)),
+            ("to = \"mpu@pty\"\n", 100.0, None),
+            ("to = \"mpu@pty,9600\"\npace = false\n", 1.0, None),
+        ] {
+            let budget = budget(BOTH, to, speed);
+            assert!((budget.bytes_per_s - speed * by_hand).abs() < 1e-6, "{to}: {}", budget.bytes_per_s);
+            assert_eq!((budget.capacity, budget.fits(), budget.ways_out.len()), (capacity, true, 0), "{to}");
+        }
+        assert!(!budget(BOTH, "to = \"mpu@pty,258190\"\n", 1.0).fits(), "a byte a second too few");
+    }
+
+    #[test]
+    fn each_way_out_has_its_number_and_only_those_that_are_ways_are_named() {
+        let ways = |scene: &str, output: &str| budget(scene, output, 1.0).ways_out.join("\n");
+        // Packets of their own are shorter when the accelerometer is slow.
+        let slow = "[gyro]\nrate = \"1 kHz\"\n[accel]\nrate = \"10 Hz\"\n";
+        let burst = ways(slow, "to = \"mpu@pty,200000\"\nlayout = \"burst\"\n");
+        assert!(burst.contains("other packets: layout = \"separate\" needs 16180 bytes/s"), "{burst}");
+        assert!(burst.contains("--set gyro.rate='832 Hz' needs 19988 bytes/s"), "{burst}");
+        assert!(!burst.contains("accel.rate"), "what is slow enough stays: {burst}");
+        assert!(burst.contains("mpu@pty,460800"), "{burst}");
+        let usb = ways(BOTH, "to = \"mpu@/dev/ttyACM0,57600\"\n");
+        assert!(usb.contains("runs at the speed of USB"), "{usb}");
+        let fast = "[gyro]\nrate = \"100 kHz\"\n";
+        let none = ways(fast, "to = \"csv@/dev/ttyUSB0\"\noverload = \"stretch\"\n");
+        assert!(
+            none.contains("no standard baud rate carries it: it takes 8") && !none.contains("stretch"),
+            "{none}"
+        );
+        // Once a second: no rate is low enough for a line of ten bytes a second, and none is offered.
+        let hopeless = ways("[gyro]\nrate = \"1 Hz\"\n", "to = \"mpu@pty,100\"\n");
+        assert!(!hopeless.contains("lower rate"), "{hopeless}");
+    }
+}
