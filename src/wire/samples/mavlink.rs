@@ -5,9 +5,21 @@ use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::{MASKS, MICROTESLA_A_GAUSS};
-use ratetable_protocols::mavlink::{Decoder, Message, Received, hil_sensor};
+use ratetable_protocols::mavlink::{
+    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, hil_sensor,
+};
 use ratetable_protocols::{Error, Losses};
 use std::collections::BTreeMap;
+
+/// The heartbeat of a ground station: MAV_TYPE_GCS, no autopilot, active.
+pub(super) fn ground_station(seq: u8) -> Vec<u8> {
+    let header = Header { version: Version::V2, seq, system: 255, component: 190 };
+    let beat =
+        heartbeat::Repr { kind: 6, autopilot: 8, system_status: 4, mavlink_version: 3, ..Default::default() };
+    let mut buffer = [0; MAX_LEN];
+    let len = encode(&header, &Message::Heartbeat(beat), &mut buffer).unwrap_or(0);
+    buffer[..len].to_vec()
+}
 
 #[derive(Default)]
 pub(super) struct Reader {
