@@ -194,6 +194,17 @@ fn a_pipe_is_listened_to_as_it_comes() {
 }
 
 #[test]
+fn a_pty_of_the_listeners_own_ends_when_its_writer_leaves() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bytes, _) = recorded(folder.path(), "mpu");
+    let path = folder.path().join("imu").display().to_string();
+    let listen = start(&["listen", &format!("mpu@pty:{path}"), "--json"]);
+    std::fs::OpenOptions::new().write(true).open(&path).unwrap().write_all(&bytes).unwrap();
+    let (code, report, text) = ended(listen);
+    assert_eq!((code, at(&report, "links.0.bytes")), (0, &bytes.len().into()), "{text}");
+}
+
+#[test]
 fn ctrl_c_ends_with_the_report() {
     let listen = start(&["listen", "mpu@tcpin:0", "--json"]);
     let folder = tempfile::tempdir().unwrap();

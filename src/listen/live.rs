@@ -43,8 +43,8 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
         // A sender that waits for a word on UDP gets one; every other link is left in silence.
         let greeted = matches!(job.address, Address::UdpOut(_)).then(|| link.sender());
         let meter = Meter::new(job.protocol);
-        let ear =
-            Ear { job, name, live, receiver, greeted, meter, clock: WallClock::start(Pacing::default()) };
+        let clock = WallClock::start(Pacing::default());
+        let ear = Ear { job, name, live, link, receiver, greeted, meter, clock };
         ear.hear(&mut signals, on).await
     })
 }
@@ -67,6 +67,7 @@ struct Ear<'a> {
     job: &'a Job,
     name: String,
     live: bool,
+    link: Link,
     receiver: Receiver,
     greeted: Option<Sender>,
     meter: Meter,
@@ -84,7 +85,7 @@ impl Ear<'_> {
         let mut ticks = interval(PROGRESS);
         ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut greetings = interval(SECOND);
-        let (mut greeting, mut recent) = (0u8, Recent::default());
+        let (mut greeting, mut recent, mut bytes) = (0u8, Recent::default(), 0);
         let mut buffer = BytesMut::with_capacity(65_536);
         loop {
             let end = first.zip(self.job.span).map(|(first, span): (Instant, Duration)| first + span);
@@ -100,6 +101,9 @@ impl Ear<'_> {
                 }
                 _ = ticks.tick() => {
                     self.give_up(start.elapsed())?;
+                    if self.is_over(&mut bytes) {
+                        break;
+                    }
                     recent.look(&self.meter);
                     let elapsed = first.map_or(Duration::ZERO, |first: Instant| first.elapsed());
                     on(Event::Progress(Progress { elapsed, meter: &self.meter, rates: &recent.rates }));
@@ -120,6 +124,13 @@ impl Ear<'_> {
             return Err(self.nothing(None));
         }
         Ok(Heard { name: self.name, interrupted, meter: self.meter })
+    }
+
+    /// Whether the writer of a pty of ours has left, which its end that we hold does not show, and all is read.
+    fn is_over(&self, before: &mut u64) -> bool {
+        let bytes = self.meter.counts().bytes;
+        let idle = std::mem::replace(before, bytes) == bytes && bytes > 0;
+        idle && self.link.peer_has_left()
     }
 
     fn greet(&mut self, seq: u8) {
