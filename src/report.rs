@@ -4,10 +4,12 @@ pub mod chart;
 mod heard;
 mod limit;
 mod text;
+mod times;
 
 pub use heard::{HeardLink, HeardReport, HeardSensor};
 pub use limit::{Limit, LimitError};
 pub use text::{number, table};
+pub use times::Times;
 
 use crate::score::Score;
 use serde::Serialize;

@@ -23,29 +23,37 @@ struct Started {
     said: BufReader<std::process::ChildStderr>,
 }
 
-/// Starts it and reads on until it says `ready: PROTOCOL@PLACE` or `listening: PROTOCOL@PLACE`.
-fn start(arguments: &[&str]) -> Started {
-    let mut child = ratetable(arguments).spawn().unwrap();
-    let mut said = BufReader::new(child.stderr.take().unwrap());
-    let mut all = String::new();
-    loop {
-        let mut line = String::new();
-        assert!(said.read_line(&mut line).unwrap() > 0, "{arguments:?} ended: {all}");
-        all += &line;
-        if line.starts_with("ready: ") || line.starts_with("listening: ") {
-            let place = line.trim_end().split_once('@').unwrap().1.to_string();
-            return Started { child, place, said };
-        }
+impl Drop for Started {
+    /// A test that fails leaves nothing running.
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }
 
+/// Starts it and reads on until it says `ready: PROTOCOL@PLACE` or `listening: PROTOCOL@PLACE`.
+fn start(arguments: &[&str]) -> Started {
+    let mut child = ratetable(arguments).spawn().unwrap();
+    let said = BufReader::new(child.stderr.take().unwrap());
+    let mut started = Started { child, place: String::new(), said };
+    let mut all = String::new();
+    while started.place.is_empty() {
+        let mut line = String::new();
+        assert!(started.said.read_line(&mut line).unwrap() > 0, "{arguments:?} ended: {all}");
+        all += &line;
+        if line.starts_with("ready: ") || line.starts_with("listening: ") {
+            started.place = line.trim_end().split_once('@').unwrap().1.to_string();
+        }
+    }
+    started
+}
+
 /// Its exit code, its report and what it said.
-fn ended(started: Started) -> (i32, Value, String) {
-    let Started { mut child, mut said, .. } = started;
+fn ended(mut started: Started) -> (i32, Value, String) {
     let (mut out, mut text) = (String::new(), String::new());
-    child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
-    said.read_to_string(&mut text).unwrap();
-    let code = child.wait().unwrap().code().unwrap();
+    started.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
+    started.said.read_to_string(&mut text).unwrap();
+    let code = started.child.wait().unwrap().code().unwrap();
     (code, serde_json::from_str(&out).unwrap_or_else(|error| panic!("{error}: {out}{text}")), text)
 }
 

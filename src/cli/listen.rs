@@ -148,7 +148,7 @@ fn faults(report: &HeardReport) -> Vec<String> {
 fn intervals(from: &Destination, meter: &Meter, sensors: &[HeardSensor]) -> String {
     let distribution = |stream: &listen::Stream| Distribution {
         name: stream.name().to_string(),
-        values: stream.intervals_us().collect(),
+        values: stream.intervals_us(),
     };
     let named = |name: &str| sensors.iter().find(|sensor| sensor.name == name);
     let median = |(of, stream): (usize, &listen::Stream)| {

@@ -119,7 +119,10 @@ pub fn heard(report: &HeardReport, interrupted: bool) -> String {
 
 fn heard_sensors(report: &HeardReport) -> String {
     let live = report.sensors.iter().any(|sensor| sensor.received_hz.is_some());
-    let mut heading = vec!["sensor", "received", "missing", "sampled Hz"];
+    let several = report.sensors.iter().any(|sensor| sensor.source != report.sensors[0].source);
+    let mut heading = vec!["sensor"];
+    heading.extend(several.then_some("source"));
+    heading.extend(["received", "missing", "sampled Hz"]);
     if live {
         heading.extend(["received Hz", "interval µs p50", "p99", "max", "jitter µs p99", "bursts"]);
     }
@@ -127,7 +130,9 @@ fn heard_sensors(report: &HeardReport) -> String {
     let hz = |rate: Option<f64>| rate.map_or("-".into(), |rate| format!("{rate:.3}"));
     let rows = report.sensors.iter().map(|sensor| {
         let missing = sensor.missing.map_or("-".into(), |missing| missing.to_string());
-        let mut row = vec![sensor.name.clone(), sensor.received.to_string(), missing, hz(sensor.rate_hz)];
+        let mut row = vec![sensor.name.clone()];
+        row.extend(several.then(|| sensor.source.clone()));
+        row.extend([sensor.received.to_string(), missing, hz(sensor.rate_hz)]);
         if live {
             let interval = sensor.interval_us;
             row.push(hz(sensor.received_hz));

@@ -1,13 +1,9 @@
 //! One sensor of a stream: how many, how evenly, by the sender's times and by ours. Memory is fixed.
 
-use crate::report::{HeardSensor, Interval, Late};
+use crate::report::{HeardSensor, Times};
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::samples::{Sample, Source};
-use hdrhistogram::Histogram;
-
-/// The longest time told apart, ns; longer ones count as this.
-const LONGEST: u64 = 60_000_000_000;
 
 /// One sensor of a stream.
 #[derive(Clone, Debug)]
@@ -22,9 +18,9 @@ pub struct Stream {
     read: u64,
     together: u64,
     steps_back: u64,
-    interval: Histogram<u64>,
-    sample_interval: Histogram<u64>,
-    jitter: Histogram<u64>,
+    interval: Times,
+    sample_interval: Times,
+    jitter: Times,
 }
 
 /// The first and the last of a row of times, ns.
@@ -50,9 +46,6 @@ impl Ends {
 
 impl Stream {
     pub(super) fn new(name: String, sample: &Sample) -> Stream {
-        // The bounds are constants that the library accepts; three digits keep percentiles within 0.1 %.
-        let histogram =
-            || Histogram::new_with_bounds(1, LONGEST, 3).unwrap_or_else(|_| unreachable!("constant bounds"));
         Stream {
             name,
             kind: sample.kind,
@@ -64,9 +57,9 @@ impl Stream {
             read: 0,
             together: 0,
             steps_back: 0,
-            interval: histogram(),
-            sample_interval: histogram(),
-            jitter: histogram(),
+            interval: Times::new(),
+            sample_interval: Times::new(),
+            jitter: Times::new(),
         }
     }
 
@@ -90,15 +83,15 @@ impl Stream {
     }
 
     /// Intervals between arrivals in µs, each with how often it occurred.
-    pub fn intervals_us(&self) -> impl Iterator<Item = (f64, u64)> + '_ {
-        recorded(&self.interval)
+    pub fn intervals_us(&self) -> Vec<(f64, u64)> {
+        self.interval.values()
     }
 
     /// Takes a sample in that arrived at `now` (ns) in the `read`-th read; `now` is `None` for a recording.
     pub(super) fn take(&mut self, t: Option<SimTime>, now: Option<i64>, read: u64) {
         let arrival = now.and_then(|now| self.arrivals.take(now));
         if let Some(step) = arrival {
-            self.interval.saturating_record(step.max(0) as u64);
+            self.interval.record(step);
             self.together += u64::from(read == self.read);
         }
         self.read = read;
@@ -110,21 +103,17 @@ impl Stream {
             self.steps_back += 1;
             return;
         }
-        self.sample_interval.saturating_record(step as u64);
+        self.sample_interval.record(step);
         if let Some(arrival) = arrival {
-            self.jitter.saturating_record(arrival.abs_diff(step));
+            self.jitter.record(arrival.saturating_sub(step).saturating_abs());
         }
     }
 
     /// Samples that a gap between two sample times hides: how often the median interval fits into it, less one.
     fn missing(&self) -> Option<u64> {
-        let median = self.sample_interval.value_at_quantile(0.5);
-        let hidden = |interval: u64| (interval + median / 2) / median - 1;
-        let gaps = self.sample_interval.iter_recorded();
-        let long = gaps.map(|gap| (gap.value_iterated_to(), gap.count_at_value()));
-        (median > 0).then(|| {
-            long.filter(|(interval, _)| *interval > median).map(|(gap, count)| hidden(gap) * count).sum()
-        })
+        let median = self.sample_interval.late()?.p50;
+        let hidden = |(gap, count): (f64, u64)| ((gap / median).round() as u64).saturating_sub(1) * count;
+        Some(self.sample_interval.values().into_iter().map(hidden).sum())
     }
 
     pub(super) fn report(&self) -> HeardSensor {
@@ -138,13 +127,9 @@ impl Stream {
             missing: self.missing(),
             steps_back: self.steps_back,
             burst_share: live.then(|| self.together as f64 / (self.count - 1).max(1) as f64),
-            interval_us: Interval::of_ns(&self.interval),
-            sample_interval_us: Interval::of_ns(&self.sample_interval),
-            jitter_us: Late::of_ns(&self.jitter),
+            interval_us: self.interval.interval(),
+            sample_interval_us: self.sample_interval.interval(),
+            jitter_us: self.jitter.late(),
         }
     }
-}
-
-fn recorded(histogram: &Histogram<u64>) -> impl Iterator<Item = (f64, u64)> + '_ {
-    histogram.iter_recorded().map(|bin| (bin.value_iterated_to() as f64 / 1000.0, bin.count_at_value()))
 }

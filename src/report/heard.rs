@@ -1,7 +1,6 @@
 //! What was heard on a link: the report of `listen`, with the names of a run's where they mean the same.
 
 use super::{Host, Interval, Late};
-use hdrhistogram::Histogram;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -75,31 +74,4 @@ pub struct HeardLink {
     pub joined_midway: u64,
     /// Packets without a sample, by name.
     pub foreign: BTreeMap<String, u64>,
-}
-
-fn us(ns: u64) -> f64 {
-    ns as f64 / 1000.0
-}
-
-impl Late {
-    /// Of times in ns; `None` where there are none.
-    pub fn of_ns(histogram: &Histogram<u64>) -> Option<Late> {
-        let at = |quantile| us(histogram.value_at_quantile(quantile));
-        (!histogram.is_empty()).then(|| Late {
-            min: us(histogram.min()),
-            p50: at(0.5),
-            p99: at(0.99),
-            p99_9: at(0.999),
-            max: us(histogram.max()),
-        })
-    }
-}
-
-impl Interval {
-    /// Of times in ns; `None` where there are none.
-    pub fn of_ns(histogram: &Histogram<u64>) -> Option<Interval> {
-        let std = histogram.stdev() / 1000.0;
-        let of = |Late { min, p50, p99, p99_9, max }| Interval { min, std, p50, p99, p99_9, max };
-        Late::of_ns(histogram).map(of)
-    }
 }
