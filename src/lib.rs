@@ -26,6 +26,7 @@ pub mod effects;
 pub mod geometry;
 pub mod keys;
 pub mod link;
+pub mod listen;
 pub mod motion;
 pub mod os;
 pub mod player;

@@ -235,7 +235,8 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
     }
 }
 
-fn host(realtime: bool, memory_locked: bool) -> Host {
+/// What this runs on, and what the pacing thread was granted.
+pub fn host(realtime: bool, memory_locked: bool) -> Host {
     let name = rustix::system::uname();
     let cpus = std::thread::available_parallelism().map_or(1, |cpus| cpus.get());
     let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());

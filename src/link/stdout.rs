@@ -16,7 +16,8 @@ use super::sender::{Carry, Out, Sender};
 use super::{Kind, Link, LinkError};
 
 /// Its line in the table of links.
-pub(super) const SCHEME: Scheme = Scheme { name: "-", spelling: "-", about: "standard output", parse };
+pub(super) const SCHEME: Scheme =
+    Scheme { name: "-", spelling: "-", about: "standard output; for `listen` standard input", parse };
 
 fn parse(rest: Option<&str>) -> Result<Address, Problem> {
     match rest {
