@@ -76,6 +76,8 @@ fn gaps_are_counted_by_number_and_by_time() {
     // A hole of 256 is not seen by the number, and is by the time.
     let meter = heard((0..100).chain(355..600), |k| k * MS);
     assert_eq!((meter.counts().lost, only(&meter).missing), (0, Some(255)));
+    let meter = heard((0..100).chain(100 + 1000..2000), |k| k * MS);
+    assert_eq!((meter.counts().lost, only(&meter).missing), (1000 - 3 * 256, Some(1000)), "whole turns");
 }
 
 #[test]

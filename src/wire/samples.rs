@@ -94,7 +94,7 @@ pub struct Counts {
     /// 1 if the stream began in the middle of a packet, which is no damage.
     pub joined_midway: u64,
     /// Packets missing by the sequence number, damaged ones included: the number counts modulo 256 for each sender,
-    /// so a gap of 255 packets is not seen, and one that came out of order counts as 254 lost. 0 for text,
+    /// so a longer gap counts what is left of it after whole turns, and a packet out of order counts as 254. 0 for text,
     /// which has no number.
     pub lost: u64,
     /// Whether packets have a sequence number at all.
