@@ -4,7 +4,7 @@ use super::demo::{Firmware, Received};
 use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary};
 use crate::link::Address;
-use crate::report::{Host, Interval, Late, Limit, LinkReport, Report, SensorReport, Spread};
+use crate::report::{Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread};
 use crate::scene::{Destination, Output, Plan};
 use crate::score::Score;
 use crate::session::{self, Event, Job, Outcome, Speed};
@@ -34,6 +34,9 @@ pub struct Arguments {
     /// How long to wait for somebody on the other side; 0 starts at once
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = options::wait)]
     wait: Duration,
+    /// Keep the pacing thread to this processor
+    #[arg(long, value_name = "N", value_parser = options::processor)]
+    cpu: Option<usize>,
     /// Override one key of the scene, such as gyro.rate='8 kHz'
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -80,6 +83,9 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
         command: arguments.command.clone(),
         keep_stdout: arguments.json,
         estimator: if demonstration { "vqf".into() } else { "firmware".into() },
+        cpu: arguments.cpu,
+        watch: None,
+        tap: None,
     };
     let (outcome, received) = play(job, &plan, demonstration)?;
     fill(&mut report, &outcome, arguments.speed);
@@ -163,6 +169,7 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         late_us: Some(Late::default()),
         interval_us: Some(Interval::default()),
         write_us: Some(Spread::default()),
+        timing: None,
     };
     let link = |output: &Output| LinkReport {
         to: output.to.to_string(),
@@ -192,18 +199,18 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         seed: plan.seed,
         duration_s: 0.0,
         speed: Value::Null,
-        host: host(false, false),
+        host: host(false, false, Some(PacingReport::default())),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),
         attitude: Some(score),
     }
 }
 
-fn host(realtime: bool, memory_locked: bool) -> Host {
+fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -> Host {
     let name = rustix::system::uname();
     let cpus = std::thread::available_parallelism().map_or(1, |cpus| cpus.get());
     let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());
-    Host { kernel, cpus, realtime, memory_locked, clock: "CLOCK_MONOTONIC" }
+    Host { kernel, cpus, realtime, memory_locked, clock: "CLOCK_MONOTONIC", pacing }
 }
 
 fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
@@ -212,7 +219,7 @@ fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
         Speed::Times(times) => times.into(),
         Speed::Max => "max".into(),
     };
-    report.host = host(outcome.realtime, outcome.memory_locked);
+    report.host = host(outcome.realtime, outcome.memory_locked, outcome.pacing);
     report.sensors = outcome.sensors.clone();
     report.links = outcome.links.clone();
     report.attitude = outcome.score.clone();

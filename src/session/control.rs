@@ -1,14 +1,15 @@
 //! The control side of a run: opens links, waits for peers, starts the threads, listens, ends cleanly.
 
-use super::answers::{Ear, Heard};
+use super::answers::{self, Ear, Heard};
 use super::pacer::Pacer;
 use super::producer::{self, Made};
 use super::tally::{self, LinkTally};
+use super::watch::Watching;
 use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command};
-use crate::clock::{Clock, Pacing, WallClock};
+use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
 use crate::os;
-use crate::report::LinkReport;
+use crate::report::{LinkReport, PacingReport};
 use crate::time::SimTime;
 use crate::wire;
 use std::cell::RefCell;
@@ -122,10 +123,11 @@ impl Run {
         let heard = Heard { damaged: vec![0; job.outputs.len()], ..Heard::default() };
         let shared = Shared::default();
         shared.start_ns.store(-1, Ordering::Relaxed);
+        let clock = job.watch.as_ref().map_or_else(WallClock::start, |watch| watch.clock);
         Run {
             job,
             shared: Arc::new(shared),
-            clock: WallClock::start(Pacing::default()),
+            clock,
             heard: Rc::new(RefCell::new(heard)),
             interrupted: false,
             ended: None,
@@ -163,7 +165,9 @@ impl Run {
         on(Event::Started);
         let senders = links.iter_mut().map(Link::sender).collect();
         self.listen(&mut links);
-        let pacer = Pacer::new(self.clock, consumer, senders, self.job.speed);
+        let clock = Precise::new(self.clock, Policy::Adaptive);
+        let mut pacer = Pacer::new(clock, consumer, senders, self.job.speed);
+        pacer.watching = self.job.watch.take().map(Watching::new);
         let (pacing, mut notices, mut done) = self.start_pacer(pacer)?;
         self.attend(on, &links, &mut signals, &mut program, &mut notices, &mut done).await;
         let (mut pacer, granted) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
@@ -215,6 +219,10 @@ impl Run {
     fn listen(&mut self, links: &mut [Link]) {
         for (i, link) in links.iter_mut().enumerate() {
             let Some(receiver) = link.receiver() else { continue };
+            if let Some(tap) = self.job.tap.take_if(|_| i == 0) {
+                self.ears.push(tokio::task::spawn_local(answers::tapped(receiver, tap)));
+                continue;
+            }
             let ear = Ear {
                 plan: self.job.plan.clone(),
                 shared: self.shared.clone(),
@@ -231,12 +239,12 @@ impl Run {
     }
 
     /// Starts the pacing thread; the channels bring a notice about what it was not allowed, and its end.
-    fn start_pacer(&self, mut pacer: Pacer<WallClock>) -> Result<Paced, SessionError> {
-        let (shared, paced) = (self.shared.clone(), self.job.speed != Speed::Max);
+    fn start_pacer(&self, mut pacer: Pacer<Precise<WallClock>>) -> Result<Paced, SessionError> {
+        let (shared, paced, cpu) = (self.shared.clone(), self.job.speed != Speed::Max, self.job.cpu);
         let (tell, notices) = oneshot::channel();
         let (over, done) = oneshot::channel();
         let body = move || {
-            let granted = if paced { privileges() } else { Granted::default() };
+            let granted = if paced { privileges(cpu) } else { Granted::default() };
             let _ = tell.send(granted.refused.clone());
             pacer.run(pacer.clock.now() + LEAD, &shared);
             let _ = over.send(());
@@ -299,7 +307,7 @@ impl Run {
     }
 
     /// Joins the producer, emptying the ring into the count of what was left while it ends.
-    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<WallClock>) -> (Made, [u64; 3]) {
+    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<Precise<WallClock>>) -> (Made, [u64; 3]) {
         self.shared.stop.store(true, Ordering::Relaxed);
         let mut left = [0; 3];
         loop {
@@ -325,6 +333,12 @@ impl Run {
             }
         }
         let (tallies, gone) = (pacer.tallies, pacer.gone);
+        let pacing =
+            pacer.effort.share().filter(|_| self.job.speed != Speed::Max).map(|share| PacingReport {
+                spin_us: pacer.clock.margin().ns() as f64 / 1000.0,
+                pacing_cpu: share,
+                pinned_cpu: granted.cpu,
+            });
         drop(pacer.senders);
         if !self.heard.borrow().estimates.is_empty() {
             tokio::time::sleep(LAST_ANSWERS).await;
@@ -355,6 +369,8 @@ impl Run {
             interrupted: self.interrupted,
             realtime: granted.priority,
             memory_locked: granted.memory,
+            pacing,
+            watched: pacer.watching.map(|watching| watching.seen),
             sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
             links: self.link_reports(&tallies, &gone, names),
             score: heard.scorer.score(&self.job.estimator),
@@ -417,6 +433,8 @@ impl Run {
             interrupted: self.interrupted,
             realtime: false,
             memory_locked: false,
+            pacing: None,
+            watched: None,
             sensors: tally::sensors(&self.job.plan, &tallies, [0; 3], [0; 3], false),
             links: self.link_reports(&tallies, &gone, names),
             score: None,
@@ -428,7 +446,7 @@ impl Run {
 
 /// What is left when both threads have ended.
 struct Ended {
-    pacer: Pacer<WallClock>,
+    pacer: Pacer<Precise<WallClock>>,
     links: Vec<Link>,
     program: Program,
     names: Vec<String>,
@@ -437,34 +455,50 @@ struct Ended {
     made: (Made, [u64; 3]),
 }
 
-type Paced =
-    (JoinHandle<(Pacer<WallClock>, Granted)>, oneshot::Receiver<Option<String>>, oneshot::Receiver<()>);
+type Paced = (
+    JoinHandle<(Pacer<Precise<WallClock>>, Granted)>,
+    oneshot::Receiver<Option<String>>,
+    oneshot::Receiver<()>,
+);
 
 /// What the system granted the pacing thread.
 #[derive(Clone, Debug, Default)]
 struct Granted {
     priority: bool,
     memory: bool,
+    /// The processor it is bound to.
+    cpu: Option<usize>,
     /// One notice about what it did not grant, and what would.
     refused: Option<String>,
 }
 
-/// Asks for real-time priority for the calling thread and locked memory for the process.
-fn privileges() -> Granted {
+/// Asks for real-time priority, punctual sleeps and the processor `cpu` for the calling thread, and locked memory for
+/// the process.
+fn privileges(cpu: Option<usize>) -> Granted {
     let priority = os::set_realtime_priority(PRIORITY);
     let memory = os::lock_memory();
+    // Without real-time priority the kernel may wake a thread 50 µs later than asked, to wake several together.
+    os::set_punctual_sleep();
+    let bound = cpu.map_or(Ok(()), |cpu| os::set_affinity(&[cpu]));
+    let mut notices = Vec::new();
     let refused: Vec<_> = [("real-time priority", &priority), ("locked memory", &memory)]
         .into_iter()
         .filter_map(|(what, granted)| granted.as_ref().err().map(|error| format!("{what} ({error})")))
         .collect();
-    let notice = format!(
-        "not granted: {}; packets may be later on a busy machine. To grant it: `sudo setcap cap_sys_nice,cap_ipc_lock+ep` on this program, or `rtprio 50` and `memlock unlimited` in /etc/security/limits.conf",
-        refused.join(", ")
-    );
+    if !refused.is_empty() {
+        notices.push(format!(
+            "not granted: {}; packets may be later on a busy machine. To grant it: `sudo setcap cap_sys_nice,cap_ipc_lock+ep` on this program, or `rtprio 50` and `memlock unlimited` in /etc/security/limits.conf",
+            refused.join(", ")
+        ));
+    }
+    if let (Some(cpu), Err(error)) = (cpu, &bound) {
+        notices.push(format!("the pacing thread could not be bound to processor {cpu}: {error}"));
+    }
     Granted {
         priority: priority.is_ok(),
         memory: memory.is_ok(),
-        refused: (!refused.is_empty()).then_some(notice),
+        cpu: cpu.filter(|_| bound.is_ok()),
+        refused: (!notices.is_empty()).then(|| notices.join("; ")),
     }
 }
 
@@ -491,6 +525,9 @@ mod tests {
             command: Vec::new(),
             keep_stdout: false,
             estimator: String::new(),
+            cpu: None,
+            watch: None,
+            tap: None,
         };
         let read_a_while = move || {
             // Away for less than is allowed, it may come back.

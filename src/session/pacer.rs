@@ -1,6 +1,7 @@
 //! The pacing thread: takes the next packet, waits until it is due, writes it, counts. Nothing else.
 
-use super::tally::LinkTally;
+use super::tally::{Effort, LinkTally, SensorTally};
+use super::watch::Watching;
 use super::{Item, Shared};
 use crate::clock::Clock;
 use crate::link::{Sender, Sent};
@@ -32,17 +33,26 @@ pub(super) struct Pacer<C> {
     /// Why a link takes nothing any more.
     pub gone: Vec<Option<std::io::ErrorKind>>,
     pub speed: Speed,
+    pub effort: Effort,
+    /// The comparison that `timing` asks for.
+    pub watching: Option<Watching>,
 }
 
 impl<C: Clock> Pacer<C> {
     pub(super) fn new(clock: C, ring: Consumer<Item>, senders: Vec<Sender>, speed: Speed) -> Pacer<C> {
         let tallies = senders.iter().map(|_| LinkTally::new()).collect();
         let gone = vec![None; senders.len()];
-        Pacer { clock, ring, senders, tallies, gone, speed }
+        Pacer { clock, ring, senders, tallies, gone, speed, effort: Effort::default(), watching: None }
     }
 
     /// Sends everything, scene time 0 being at `start` (ns on its clock), until the ring has ended or all stops.
     pub(super) fn run(&mut self, start: i64, shared: &Shared) {
+        self.effort.resume(self.clock.now());
+        self.stream(start, shared);
+        self.effort.pause(self.clock.now());
+    }
+
+    fn stream(&mut self, mut start: i64, shared: &Shared) {
         shared.start_ns.store(start, Ordering::Relaxed);
         while !shared.stopped() && self.gone.contains(&None) {
             let Ok(item) = self.ring.peek() else {
@@ -52,14 +62,17 @@ impl<C: Clock> Pacer<C> {
                 std::thread::sleep(EMPTY);
                 continue;
             };
+            if self.watching.as_ref().is_some_and(|watching| watching.interrupts(&item.packet)) {
+                start = self.compare(shared).unwrap_or(start);
+                continue;
+            }
             let due = match self.speed {
                 Speed::Times(1.0) => start + item.packet.due.0,
                 Speed::Times(times) => start + (item.packet.due.0 as f64 / times) as i64,
                 Speed::Max => i64::MIN,
             };
             if due > self.clock.now() + LOOK_UP {
-                let soon = self.clock.now() + LOOK_UP;
-                self.clock.wait_until(soon);
+                self.clock.sleep_until(self.clock.now() + LOOK_UP / 2);
                 continue;
             }
             // The packet leaves the ring before the wait, so that nothing stands between the wait and the write.
@@ -69,6 +82,17 @@ impl<C: Clock> Pacer<C> {
             }
             self.send(output, &packet, due, shared);
         }
+    }
+
+    /// A slice of the bare timer: answers where scene time 0 is after it.
+    fn compare(&mut self, shared: &Shared) -> Option<i64> {
+        let watching = self.watching.as_mut()?;
+        self.effort.pause(self.clock.now());
+        let start = watching.bare_timer(&mut self.clock, shared);
+        self.tallies.iter_mut().flat_map(|tally| &mut tally.sensors).for_each(SensorTally::pause);
+        shared.start_ns.store(start, Ordering::Relaxed);
+        self.effort.resume(self.clock.now());
+        Some(start)
     }
 
     fn send(&mut self, output: usize, packet: &Packet, due: i64, shared: &Shared) {
@@ -94,6 +118,9 @@ impl<C: Clock> Pacer<C> {
             }
             sensor.dropped += lost;
             shared.dropped.fetch_add(lost, Ordering::Relaxed);
+        }
+        if let Some(watching) = &mut self.watching {
+            watching.packet(packet, due, done.then_some(before));
         }
         tally.packets += u64::from(done);
         tally.bytes += if done { packet.bytes().len() as u64 } else { 0 };

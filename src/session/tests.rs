@@ -169,6 +169,9 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
             command: Vec::new(),
             keep_stdout: false,
             estimator: String::new(),
+            cpu: None,
+            watch: None,
+            tap: None,
         };
         let outcome = run(job, &mut |_| {}).unwrap();
         assert_eq!(outcome.played, plan.duration);
