@@ -7,6 +7,7 @@
 pub mod answer;
 mod mavlink;
 mod mpu;
+pub mod samples;
 mod text;
 
 use crate::earth::Day;

@@ -2,7 +2,7 @@
 
 /// Counts packets that did not arrive, by the eight-bit `seq` of those that did.
 ///
-/// Exact as long as fewer than 256 packets are lost in a row and the link keeps their order. A
+/// Exact as long as fewer than 255 packets are lost in a row and the link keeps their order. A
 /// repeated number counts as nothing lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Losses {

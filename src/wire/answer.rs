@@ -54,7 +54,7 @@ impl Listener {
 }
 
 /// The time whose microseconds are `t_us` modulo 2³² and which is nearest to `near`.
-fn unwrapped(t_us: u32, near: SimTime) -> SimTime {
+pub(super) fn unwrapped(t_us: u32, near: SimTime) -> SimTime {
     let near_us = near.0 / 1000;
     let ahead = t_us.wrapping_sub(near_us as u32) as i32;
     SimTime((near_us + i64::from(ahead)).max(0) * 1000)

@@ -21,8 +21,9 @@ const ACTIVE: u8 = 4;
 /// The `mavlink_version` of every dialect in use.
 const DIALECT_VERSION: u8 = 3;
 
-const MICROTESLA_A_GAUSS: f64 = 100.0;
-const MASKS: [u32; 3] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG];
+pub(super) const MICROTESLA_A_GAUSS: f64 = 100.0;
+/// The bits of `fields_updated` of gyro, accel and mag.
+pub(super) const MASKS: [u32; 3] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG];
 
 pub(super) struct Mavlink {
     seq: u8,

@@ -10,16 +10,20 @@ use proptest::prelude::*;
 use ratetable_protocols::mavlink::{self, Message, hil_sensor};
 use ratetable_protocols::mpu::{self, config, registers};
 
-fn plan(text: &str) -> Plan {
+pub(super) fn plan(text: &str) -> Plan {
     Plan::parse(text, "s", "s", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn setup(plan: &Plan, layout: Option<Layout>) -> Setup<'_> {
+pub(super) fn setup(plan: &Plan, layout: Option<Layout>) -> Setup<'_> {
     Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: Options { layout } }
 }
 
 /// Every packet of a plan, and every reading with its time.
-fn play(plan: &Plan, protocol: Protocol, layout: Option<Layout>) -> (Vec<Packet>, Vec<(SimTime, Reading)>) {
+pub(super) fn play(
+    plan: &Plan,
+    protocol: Protocol,
+    layout: Option<Layout>,
+) -> (Vec<Packet>, Vec<(SimTime, Reading)>) {
     let mut encoder = encoder(protocol, &setup(plan, layout));
     let (mut packets, mut readings) = (Vec::new(), Vec::new());
     let played: Result<(), ()> = Player::new(plan, plan.duration, 256).play(|moment| {
@@ -65,7 +69,7 @@ fn counts_match(counts: [i16; 3], reading: &Reading, count: f64) {
 const GYRO_COUNT: f64 = std::f64::consts::PI / 180.0 / 16.4;
 const ACCEL_COUNT: f64 = STANDARD_GRAVITY / 2048.0;
 
-const NOISY: &str = r#"
+pub(super) const NOISY: &str = r#"
 seed = 2
 [[motion]]
 kind = "rotate"
@@ -372,7 +376,7 @@ fn text_reads_back_to_the_same_bits_in_the_scenes_axes() {
                 (object["t_ns"].as_i64(), object["sensor"].as_str()),
                 (Some(t.0), Some(reading.kind.name()))
             );
-            // The numbers as written: serde_json itself may read the last bit of one wrongly.
+            // The numbers as written, not as the library that we also use reads them.
             let text = std::str::from_utf8(json.bytes()).unwrap();
             let number = |key: &str| {
                 text.split_once(key).unwrap().1.split([',', '}']).next().unwrap().parse::<f64>().unwrap()

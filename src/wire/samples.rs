@@ -1,0 +1,160 @@
+//! The stream of any protocol back to samples: what a receiver that knows nothing of the scene can read.
+//!
+//! Each protocol is one file that hands on every [`Sample`] and counts what came besides ([`Counts`]). Nothing
+//! panics on any bytes, memory stays bounded, and damage costs at most itself.
+
+mod mavlink;
+mod mpu;
+mod text;
+
+use super::Protocol;
+use crate::geometry::{Axes, Body, Vector};
+use crate::sensor::{Mount, SensorKind};
+use crate::time::SimTime;
+use std::collections::BTreeMap;
+
+/// One sample of one sensor, as a packet says it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// What is sensed.
+    pub kind: SensorKind,
+    /// Which of several sensors of that kind on the link.
+    pub source: Source,
+    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text: ns; some MAVLink
+    /// messages: ms). A clock that wraps goes on counting here.
+    pub t: Option<SimTime>,
+    /// The reading in body axes, rad/s, m/s² or µT; `None` where the packet does not say what its counts mean
+    /// (`mpu` before its first config packet, raw messages) or that they mean nothing (an overflow).
+    pub value: Option<Vector<Body>>,
+}
+
+/// Who among several sensors of a kind a sample is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Source {
+    /// The MAVLink message, in lower case; the protocol's name for the others, which have one sensor of a kind.
+    pub message: &'static str,
+    /// The MAVLink system, component and the set of sensors that the message names; 0 for the others.
+    pub set: [u8; 3],
+}
+
+impl Source {
+    /// The only sensor of its kind on the link.
+    const fn only(message: &'static str) -> Source {
+        Source { message, set: [0; 3] }
+    }
+}
+
+/// What the packets do not say, so that a reader has to assume it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assumed {
+    /// The axes that text is written in.
+    pub axes: Axes,
+    /// From body to the chip's axes, of gyro, accel and mag, for the registers of `mpu`.
+    pub mounts: [Mount; 3],
+}
+
+impl Default for Assumed {
+    /// Forward-right-down, and chips whose x points forward and z up, as the encoders of a plain scene have it.
+    fn default() -> Assumed {
+        Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3] }
+    }
+}
+
+/// What a stream has brought so far.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Bytes taken in.
+    pub bytes: u64,
+    /// Whole packets of the protocol, sensors' or not; a line of text is a packet, the line of names too.
+    pub packets: u64,
+    /// Stretches of bytes that are no packet or fail its checksum. One stretch may hide several packets.
+    pub damaged: u64,
+    /// 1 if the stream began in the middle of a packet, which is no damage.
+    pub joined_midway: u64,
+    /// Packets missing by the sequence number, damaged ones included: the number counts modulo 256 for each sender,
+    /// so a gap of 255 packets is not seen, and one that came out of order counts as 254 lost. 0 for text,
+    /// which has no number.
+    pub lost: u64,
+    /// Whether packets have a sequence number at all.
+    pub numbered: bool,
+    /// Packets that carry no sample, by name.
+    pub foreign: BTreeMap<String, u64>,
+}
+
+impl Counts {
+    /// As many names of foreign packets as are kept apart.
+    const NAMES: usize = 64;
+
+    fn refuse(&mut self) {
+        let first = self.packets == 0 && self.damaged == 0 && self.joined_midway == 0;
+        *if first { &mut self.joined_midway } else { &mut self.damaged } += 1;
+    }
+
+    fn foreign(&mut self, name: &str) {
+        if let Some(count) = self.foreign.get_mut(name) {
+            *count += 1;
+            return;
+        }
+        let name = if self.foreign.len() < Self::NAMES { name } else { "others" };
+        *self.foreign.entry(name.to_string()).or_default() += 1;
+    }
+}
+
+/// Reads the samples out of one stream of bytes, however it is cut up.
+pub struct Samples {
+    counts: Counts,
+    reader: Reader,
+}
+
+enum Reader {
+    Mpu(Box<mpu::Reader>),
+    Mavlink(Box<mavlink::Reader>),
+    Text(text::Reader),
+}
+
+impl Samples {
+    /// For a stream of which nothing more is known.
+    pub fn new(protocol: Protocol) -> Samples {
+        Samples::assuming(protocol, &Assumed::default())
+    }
+
+    /// For a stream whose axes are known.
+    pub fn assuming(protocol: Protocol, assumed: &Assumed) -> Samples {
+        let reader = match protocol {
+            Protocol::Mpu => Reader::Mpu(Box::new(mpu::Reader::new(assumed.mounts))),
+            Protocol::Mavlink => Reader::Mavlink(Box::default()),
+            Protocol::Csv => Reader::Text(text::Reader::csv(assumed.axes)),
+            Protocol::Jsonl => Reader::Text(text::Reader::jsonl(assumed.axes)),
+        };
+        let numbered = !matches!(reader, Reader::Text(_));
+        Samples { counts: Counts { numbered, ..Counts::default() }, reader }
+    }
+
+    /// Takes bytes in as they arrive and hands on every sample in them, in the order of the bytes.
+    pub fn feed(&mut self, bytes: &[u8], mut each: impl FnMut(Sample)) {
+        self.counts.bytes += bytes.len() as u64;
+        match &mut self.reader {
+            Reader::Mpu(reader) => reader.feed(bytes, &mut self.counts, &mut each),
+            Reader::Mavlink(reader) => reader.feed(bytes, &mut self.counts, &mut each),
+            Reader::Text(reader) => reader.feed(bytes, &mut self.counts, &mut each),
+        }
+    }
+
+    /// Judges what is held as if nothing more were to come; half a packet at the end is no damage.
+    pub fn finish(&mut self, mut each: impl FnMut(Sample)) {
+        match &mut self.reader {
+            // A packet ends with its zero.
+            Reader::Mpu(_) => {}
+            Reader::Mavlink(reader) => reader.finish(&mut self.counts, &mut each),
+            Reader::Text(reader) => reader.finish(&mut self.counts, &mut each),
+        }
+    }
+
+    /// What has come so far.
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+}
+
+#[cfg(test)]
+mod tests;

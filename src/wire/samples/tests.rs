@@ -1,0 +1,331 @@
+//! What every encoder makes comes back sample for sample; damage, gaps and any bytes at all.
+
+use super::*;
+use crate::scene::Plan;
+use crate::sensor::Reading;
+use crate::wire::tests::{NOISY, plan, play};
+use crate::wire::{Layout, Packet};
+use proptest::prelude::*;
+use std::sync::OnceLock;
+
+/// Sensors at rates that have nothing to do with one another, each axis and sensor with values of its own.
+const MIXED: &str = r#"
+seed = 5
+[[motion]]
+kind = "rotate"
+angular_rate = "[120, -310, 77] deg/s"
+duration = "2.5 s"
+[gyro]
+rate = "400 Hz"
+noise_std = "1 deg/s"
+range = "500 deg/s"
+mount = "rbd"
+[accel]
+rate = "400/3 Hz"
+noise_std = "1 m/s^2"
+range = "4 g"
+mount = "flu"
+[mag]
+rate = "37 Hz"
+noise_std = "1 uT"
+mount = "luf"
+"#;
+
+fn assumed(plan: &Plan) -> Assumed {
+    let mount = |kind| plan.sensors.iter().find(|sensor| sensor.kind == kind).and_then(|sensor| sensor.mount);
+    let mounts = SensorKind::ALL.map(|kind| mount(kind).unwrap_or(Mount::flu()));
+    Assumed { axes: plan.axes, mounts }
+}
+
+/// Everything that these bytes hold, fed in pieces of so many bytes.
+fn read(mut samples: Samples, bytes: &[u8], piece: usize) -> (Vec<Sample>, Counts) {
+    let mut all = Vec::new();
+    bytes.chunks(piece.max(1)).for_each(|piece| samples.feed(piece, |sample| all.push(sample)));
+    samples.finish(|sample| all.push(sample));
+    (all, samples.counts().clone())
+}
+
+fn bytes(packets: &[Packet]) -> Vec<u8> {
+    packets.iter().flat_map(|packet| packet.bytes().to_vec()).collect()
+}
+
+/// How far a value may be from the reading that was sent: half a count, the rounding of an `f32`, or nothing.
+fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
+    let count = [1f64.to_radians() / 16.4, crate::earth::STANDARD_GRAVITY / 2048.0, 0.15][kind as usize];
+    match protocol {
+        Protocol::Mpu => 0.5 * count * (1.0 + 1e-9),
+        Protocol::Mavlink => 2.0 * reading.abs() * f64::from(f32::EPSILON),
+        Protocol::Csv | Protocol::Jsonl => 0.0,
+    }
+}
+
+/// The first thing in which the samples differ from the readings that were sent.
+fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample]) -> Option<String> {
+    for kind in SensorKind::ALL {
+        let sent: Vec<_> = sent.iter().filter(|(_, reading)| reading.kind == kind).collect();
+        let came: Vec<_> = samples.iter().filter(|sample| sample.kind == kind).collect();
+        if sent.len() != came.len() {
+            return Some(format!("{} {kind} of {}", came.len(), sent.len()));
+        }
+        for ((t, reading), sample) in sent.into_iter().zip(came) {
+            let unit = if protocol == Protocol::Csv || protocol == Protocol::Jsonl { 1 } else { 1000 };
+            if sample.t != Some(SimTime(t.0 / unit * unit)) {
+                return Some(format!("{kind} at {:?}, sent for {t}", sample.t));
+            }
+            let expected = reading.value.v.to_array();
+            let Some(value) = sample.value else { return Some(format!("{kind} at {t} without a value")) };
+            let off = |(seen, sent): (f64, f64)| (seen - sent).abs() > tolerance(protocol, kind, sent);
+            if value.v.to_array().into_iter().zip(expected).any(off) {
+                return Some(format!("{kind} at {t}: {value:?} of {expected:?}"));
+            }
+        }
+    }
+    None
+}
+
+#[test]
+fn every_sample_comes_back_with_its_time_and_value() {
+    let scenes = [NOISY, MIXED].map(String::from);
+    let turned = [NOISY, MIXED].map(|scene| format!("axes = \"enu-flu\"\n{scene}"));
+    for plan in scenes.iter().chain(&turned).map(|text| plan(text)) {
+        for protocol in Protocol::ALL {
+            let (packets, readings) = play(&plan, protocol, None);
+            // With MAVLink a sensor's sample leaves at the next tick of the gyro: compare where they tick together.
+            if protocol == Protocol::Mavlink && plan.sensors[1].rate != plan.sensors[0].rate {
+                continue;
+            }
+            let bytes = bytes(&packets);
+            for piece in [bytes.len(), 1, 7, 1000] {
+                let (samples, counts) = read(Samples::assuming(protocol, &assumed(&plan)), &bytes, piece);
+                assert_eq!(difference(protocol, &readings, &samples), None, "{protocol:?}");
+                assert_eq!((counts.packets, counts.bytes), (packets.len() as u64, bytes.len() as u64));
+                assert_eq!((counts.damaged, counts.joined_midway, counts.lost), (0, 0, 0));
+                assert_eq!(counts.numbered, matches!(protocol, Protocol::Mpu | Protocol::Mavlink));
+            }
+        }
+    }
+}
+
+/// Negative control: a mistake in axes, sign or scale does not pass for a round trip.
+#[test]
+fn a_swapped_axis_is_noticed() {
+    let plan = plan(NOISY);
+    for protocol in Protocol::ALL {
+        let (packets, readings) = play(&plan, protocol, None);
+        let (samples, _) = read(Samples::new(protocol), &bytes(&packets), 4096);
+        assert_eq!(difference(protocol, &readings, &samples), None);
+        let changes: [fn([f64; 3]) -> [f64; 3]; 4] = [
+            |[x, y, z]| [y, x, z],
+            |[x, y, z]| [x, -y, z],
+            |[x, y, z]| [y, z, x],
+            |[x, y, z]| [1.01 * x, 1.01 * y, 1.01 * z],
+        ];
+        for change in changes {
+            for kind in SensorKind::ALL {
+                let changed = |sample: &Sample| match sample.value {
+                    Some(value) if sample.kind == kind => {
+                        let [x, y, z] = change(value.v.to_array());
+                        Sample { value: Some(Vector::new(x, y, z)), ..*sample }
+                    }
+                    _ => *sample,
+                };
+                let changed: Vec<_> = samples.iter().map(changed).collect();
+                assert!(difference(protocol, &readings, &changed).is_some(), "{protocol:?} {kind}");
+            }
+        }
+    }
+    let (packets, readings) = play(&plan, Protocol::Mpu, None);
+    let upside_down = Assumed { mounts: [Mount::default(); 3], ..Assumed::default() };
+    let (samples, _) = read(Samples::assuming(Protocol::Mpu, &upside_down), &bytes(&packets), 99);
+    assert!(difference(Protocol::Mpu, &readings, &samples).is_some(), "another mount");
+}
+
+#[test]
+fn a_burst_gives_a_sample_of_each_at_every_packet_the_slower_one_held() {
+    let plan = plan(&NOISY.replacen("200 Hz", "400 Hz", 1));
+    let (packets, readings) = play(&plan, Protocol::Mpu, Some(Layout::Burst));
+    let (samples, _) = read(Samples::new(Protocol::Mpu), &bytes(&packets), 100);
+    let held: Vec<_> = readings
+        .iter()
+        .filter(|(_, reading)| reading.kind == SensorKind::Gyro)
+        .map(|(t, _)| {
+            let newest = |(due, reading): &&(SimTime, Reading)| due <= t && reading.kind == SensorKind::Accel;
+            (*t, readings.iter().rfind(newest).unwrap().1)
+        })
+        .collect();
+    let sent: Vec<_> =
+        readings.into_iter().filter(|(_, reading)| reading.kind != SensorKind::Accel).chain(held).collect();
+    assert_eq!(difference(Protocol::Mpu, &sent, &samples), None);
+}
+
+#[test]
+fn mavlink_gives_only_what_a_message_says_is_new() {
+    let plan = plan(MIXED);
+    let (packets, _) = play(&plan, Protocol::Mavlink, None);
+    let (samples, counts) = read(Samples::new(Protocol::Mavlink), &bytes(&packets), 50);
+    for kind in SensorKind::ALL {
+        let carried = packets.iter().filter(|packet| packet.carries >> kind as u8 & 1 == 1).count();
+        assert_eq!(samples.iter().filter(|sample| sample.kind == kind).count(), carried, "{kind}");
+    }
+    let names: Vec<_> = counts.foreign.iter().map(|(name, count)| (name.as_str(), *count)).collect();
+    assert_eq!(names, [("heartbeat", 3), ("system_time", 3)]);
+}
+
+/// A stream of each numbered protocol.
+fn numbered() -> &'static [(Protocol, Vec<Packet>); 2] {
+    static PLAYED: OnceLock<[(Protocol, Vec<Packet>); 2]> = OnceLock::new();
+    PLAYED.get_or_init(|| {
+        let plan = plan(NOISY);
+        [Protocol::Mpu, Protocol::Mavlink].map(|protocol| (protocol, play(&plan, protocol, None).0))
+    })
+}
+
+#[test]
+fn a_gap_in_the_sequence_is_counted_to_the_packet() {
+    for (protocol, packets) in numbered() {
+        for (from, count) in [(1, 1), (10, 3), (200, 254), (250, 12)] {
+            let mut left = packets.clone();
+            left.drain(from..from + count);
+            let (_, counts) = read(Samples::new(*protocol), &bytes(&left), 64);
+            assert_eq!((counts.lost, counts.damaged), (count as u64, 0), "{protocol:?} {count} from {from}");
+        }
+        let mut left = packets.clone();
+        left.drain(100..100 + 255);
+        let (_, counts) = read(Samples::new(*protocol), &bytes(&left), 64);
+        assert_eq!(counts.lost, 0, "255 lost look like a packet sent twice");
+    }
+}
+
+#[test]
+fn a_damaged_packet_costs_itself_and_is_counted() {
+    for (protocol, packets) in numbered() {
+        let packets = &packets[..20];
+        let whole = read(Samples::new(*protocol), &bytes(packets), 64).0;
+        for hurt in [1, 5, 13] {
+            for bit in 0..packets[hurt].bytes().len() * 8 {
+                let mut damaged: Vec<_> = packets.iter().map(|packet| packet.bytes().to_vec()).collect();
+                damaged[hurt][bit / 8] ^= 1 << (bit % 8);
+                let (samples, counts) = read(Samples::new(*protocol), &damaged.concat(), 4096);
+                let cost = packets[hurt].carries.count_ones() as usize;
+                assert_eq!(samples.len(), whole.len() - cost, "{protocol:?} packet {hurt} bit {bit}");
+                // A message of an id that is not known cannot be checked; it is counted by that id.
+                let unknown = counts.foreign.keys().any(|name| name.starts_with("message"));
+                let damaged = counts.damaged >= 1 && counts.lost == 1;
+                assert!(damaged != unknown, "{protocol:?} {counts:?}");
+                let id = *protocol == Protocol::Mavlink && (7..10).contains(&(bit / 8));
+                assert!(!unknown || id, "only where the id itself is hurt: bit {bit}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stream_joined_midway_is_not_damaged_and_has_values_once_they_have_a_scale() {
+    for (protocol, packets) in numbered() {
+        let second = packets.iter().position(|packet| packet.due >= SimTime(crate::time::NANOS)).unwrap();
+        let (samples, counts) = read(Samples::new(*protocol), &bytes(packets)[3..], 64);
+        assert_eq!((counts.joined_midway, counts.damaged, counts.lost), (1, 0, 0), "{protocol:?}");
+        let blind = samples.iter().filter(|sample| sample.value.is_none()).count();
+        let before: u32 = packets[1..second].iter().map(|packet| packet.carries.count_ones()).sum();
+        let expected = if *protocol == Protocol::Mpu { before as usize } else { 0 };
+        assert_eq!(blind, expected, "counts without a config have no unit");
+    }
+}
+
+#[test]
+fn time_goes_on_where_the_packets_clock_wraps() {
+    let plan = plan("duration = \"4 s\"\n[gyro]\nrate = \"10 Hz\"\n");
+    let mut encoder = crate::wire::encoder(Protocol::Mpu, &crate::wire::tests::setup(&plan, None));
+    let (mut packets, mut times) = (Vec::new(), Vec::new());
+    // From 1 s before the 32 bits of µs wrap, at an uptime beyond half of them.
+    for k in 0..400i64 {
+        let t = SimTime(4_294_000_000_000 + k * 100_000_000);
+        times.push(Some(t));
+        encoder.encode(t, &[Reading::zero(0, SensorKind::Gyro)], &mut packets);
+    }
+    let from = packets.iter().position(|packet| packet.due.0 >= 4_294_000_000_000).unwrap();
+    let (samples, _) = read(Samples::new(Protocol::Mpu), &bytes(&packets[from..]), 64);
+    assert_eq!(samples.iter().map(|sample| sample.t).collect::<Vec<_>>(), times);
+}
+
+#[test]
+fn lines_of_others_are_read_as_far_as_they_are_samples() {
+    for (protocol, text, kinds, foreign, damaged) in [
+        (
+            Protocol::Csv,
+            "t_ns,sensor,x,y,z\n5,gyro,1,2,3,extra\r\n\n# remark\n6,baro,1,2,3\n7,mag,1,2\n8,mag,1,2,3",
+            2,
+            1,
+            1,
+        ),
+        (
+            Protocol::Jsonl,
+            "{\"y\":2,\"x\":1,\"z\":3,\"sensor\":\"gyro\",\"t_ns\":5,\"n\":null}\n{\"t_ns\":5}\n[]\n",
+            1,
+            0,
+            2,
+        ),
+        (Protocol::Csv, "5,gyro,nan,1,2\n", 1, 0, 0),
+    ] {
+        let (samples, counts) = read(Samples::new(protocol), text.as_bytes(), 3);
+        assert_eq!(
+            (samples.len(), counts.foreign.values().sum(), counts.damaged),
+            (kinds, foreign, damaged),
+            "{text}"
+        );
+        assert_eq!(samples[0].t, Some(SimTime(5)));
+        let value = (!text.contains("nan")).then(|| Vector::new(1.0, 2.0, 3.0));
+        assert_eq!(samples[0].value, value, "a value that is no number is none");
+    }
+}
+
+#[test]
+fn names_of_foreign_packets_do_not_fill_the_memory() {
+    let mut samples = Samples::new(Protocol::Csv);
+    for i in 0..10_000 {
+        samples.feed(format!("{i},sensor{i},1,2,3\n").as_bytes(), |_| {});
+    }
+    let foreign = &samples.counts().foreign;
+    assert_eq!((foreign.len(), foreign.values().sum::<u64>()), (Counts::NAMES + 1, 10_000));
+    samples.feed(&[b'7'; 1_000_000], |_| {});
+    let Reader::Text(reader) = &samples.reader else { panic!() };
+    assert!(reader.held() <= 1024, "nor does a line without an end");
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_do_not_panic_and_read_the_same_however_cut(
+        protocol in prop::sample::select(Protocol::ALL.to_vec()),
+        bytes in prop::collection::vec(prop_oneof![Just(0u8), Just(b'\n'), Just(0xfd), Just(0xfe), Just(b','), any::<u8>()], 0..2000),
+        piece in 1..300usize,
+    ) {
+        let whole = read(Samples::new(protocol), &bytes, bytes.len());
+        let cut = read(Samples::new(protocol), &bytes, piece);
+        prop_assert_eq!(whole.1, cut.1);
+        prop_assert_eq!(format!("{:?}", whole.0), format!("{:?}", cut.0));
+    }
+
+    #[test]
+    fn a_stream_with_holes_and_flips_gives_only_samples_that_were_sent(
+        which in 0..2usize,
+        flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8u32), 0..20),
+        holes in prop::collection::vec(any::<prop::sample::Index>(), 0..5),
+    ) {
+        let (protocol, packets) = &numbered()[which];
+        let mut bytes = bytes(&packets[..100]);
+        let sent = read(Samples::new(*protocol), &bytes, 4096).0;
+        for (at, bit) in flips {
+            let at = at.index(bytes.len());
+            bytes[at] ^= 1 << bit;
+        }
+        for at in holes {
+            let at = at.index(bytes.len());
+            bytes.remove(at);
+        }
+        let (came, _) = read(Samples::new(*protocol), &bytes, 4096);
+        let mut rest = sent.iter();
+        for sample in came {
+            prop_assert!(rest.any(|sent| sent.kind == sample.kind && sent.t == sample.t), "{sample:?} was not sent");
+        }
+    }
+}
