@@ -255,6 +255,14 @@ mod tests {
     }
 
     #[test]
+    fn a_thread_can_be_woken_punctually() {
+        set_punctual_sleep();
+        let slack = rustix::thread::current_timer_slack().unwrap();
+        // A thread of real-time priority has none to begin with.
+        assert!(slack <= 1, "{slack} ns");
+    }
+
+    #[test]
     fn a_threads_processor_time_grows_as_it_works() {
         let before = thread_cpu_time();
         let mut sum = 0_u64;

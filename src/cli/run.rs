@@ -156,7 +156,7 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
 }
 
 /// A report with every field that a run can have: limits are checked against it before anything is opened.
-fn shape(plan: &Plan, outputs: &[Output]) -> Report {
+pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
     let sensor = |sensor: &crate::sensor::SensorPlan| SensorReport {
         name: sensor.kind.name().into(),
         rate_hz: sensor.rate.as_hz(),
@@ -213,7 +213,7 @@ fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -> Ho
     Host { kernel, cpus, realtime, memory_locked, clock: "CLOCK_MONOTONIC", pacing }
 }
 
-fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
+pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.duration_s = outcome.played.seconds();
     report.speed = match speed {
         Speed::Times(times) => times.into(),
@@ -226,7 +226,7 @@ fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
 }
 
 /// Losses, broken limits, and a command that failed.
-fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
+pub(super) fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
     let lost = report.sensors.iter().filter(|sensor| sensor.dropped > 0);
     let mut failed: Vec<_> =
         lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();

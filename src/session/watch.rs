@@ -17,7 +17,8 @@ const LEAD: i64 = 1_000_000;
 pub struct Watch {
     /// The clock that records are in, shared with whoever receives.
     pub clock: WallClock,
-    /// How long a slice is: of the stream, then as much of the bare timer, in which scene time stands still.
+    /// How long a slice of the bare timer is, in which scene time stands still, and then one of the stream. Both begin
+    /// with half of one, so that no slice begins where packets are due that are sent once a second.
     pub slice: SimTime,
     /// The bare timer's rate.
     pub rate: Rate,
@@ -83,7 +84,11 @@ impl Watching {
     pub(super) fn bare_timer(&mut self, clock: &mut impl Clock, shared: &Shared) -> i64 {
         let start = clock.now() + LEAD;
         let (rate, before) = (self.asked.rate, self.seen.late.count());
-        for i in 1..=rate.ticks_before(SimTime::ZERO, self.asked.slice) {
+        let stream = self.next;
+        let first = stream == SimTime::ZERO;
+        let length = SimTime(if first { self.asked.slice.0 / 2 } else { self.asked.slice.0 });
+        self.next = stream + length;
+        for i in 1..=rate.ticks_before(SimTime::ZERO, length) {
             if shared.stopped() {
                 break;
             }
@@ -93,8 +98,6 @@ impl Watching {
             self.seen.late.record(woke - due);
             self.record(Record::Wake { k: before + i - 1, due, woke });
         }
-        let stream = self.next;
-        self.next = stream + self.asked.slice;
         clock.now() + LEAD - stream.0
     }
 

@@ -3,8 +3,8 @@
 
 use super::reader::Arrival;
 use crate::report::Times;
-use crate::schedule::Ticks;
 use crate::scene::Plan;
+use crate::schedule::Ticks;
 use crate::sensor::SensorKind;
 use crate::session::Record;
 use crate::time::SimTime;
@@ -40,6 +40,8 @@ pub struct Sensor {
     pub received: u64,
     /// Samples that did not.
     pub missed: u64,
+    /// Samples sent later than a whole period.
+    pub overdue: u64,
     /// From sent to received.
     pub transit: Times,
 }
@@ -56,7 +58,8 @@ impl Sensor {
         if let Some(written) = sent.sent {
             self.transit.record(at - written);
         }
-        let slice = sent.t.0 / slice.0;
+        // The first slice is half of one.
+        let slice = (sent.t.0 + slice.0 / 2) / slice.0;
         if let Some((before, last)) = self.last.replace((slice, at))
             && before == slice
         {
@@ -77,13 +80,16 @@ pub struct Peaks {
 impl Peaks {
     const MOST: usize = 1000;
 
-    fn new(first: i64) -> Peaks {
+    /// From `first` on, ns.
+    pub fn new(first: i64) -> Peaks {
         Peaks { width: 10_000_000, first, values: Vec::with_capacity(Peaks::MOST) }
     }
 
-    fn add(&mut self, at: i64, value: f64) {
+    /// A value at a time, ns.
+    pub fn add(&mut self, at: i64, value: f64) {
         while (at - self.first) / self.width >= Peaks::MOST as i64 {
-            self.values = self.values.chunks(2).map(|pair| pair.iter().copied().fold(f64::NAN, f64::max)).collect();
+            self.values =
+                self.values.chunks(2).map(|pair| pair.iter().copied().fold(f64::NAN, f64::max)).collect();
             self.width *= 2;
         }
         let i = ((at - self.first) / self.width).max(0) as usize;
@@ -133,6 +139,7 @@ impl Ledger {
             intervals: (0, 0),
             received: 0,
             missed: 0,
+            overdue: 0,
             transit: Times::new(),
         };
         Ledger {
@@ -155,6 +162,8 @@ impl Ledger {
             }
             Record::Sample { kind, t, due, sent } => {
                 let Some(i) = self.sensors.iter().position(|sensor| sensor.kind == kind) else { return };
+                let period = (self.sensors[i].ticks.rate.period() * 1e9) as i64;
+                self.sensors[i].overdue += u64::from(sent.is_some_and(|sent| sent - due > period));
                 if let (0, Some(sent)) = (i, sent) {
                     self.late.record(sent - due);
                     self.stream.add(sent, (sent - due) as f64 / 1000.0);
@@ -179,32 +188,32 @@ impl Ledger {
     /// Sets what came against what was sent, as far as both are known.
     pub fn settle(&mut self) {
         for i in 0..self.sensors.len() {
-            let sensor = &mut self.sensors[i];
-            while let (Some(&sent), Some(&came)) = (sensor.sent.front(), sensor.came.front()) {
-                // A packet says its time in whole µs, rounded down.
-                match (sent.t - came.t).0 {
-                    ..0 => {
-                        self.sensors[i].sent.pop_front();
-                        self.sample(i, sent, None);
-                    }
-                    0..1000 => {
-                        sensor.came.pop_front();
-                        sensor.sent.pop_front();
-                        sensor.arrived(sent, came.at, self.slice);
-                        self.sample(i, sent, Some(came.at));
-                    }
-                    // A value held over from the packet before.
-                    _ => drop(sensor.came.pop_front()),
-                }
-                if self.sensors[i].sent.is_empty() {
-                    break;
-                }
+            while let (Some(&sent), Some(&came)) =
+                (self.sensors[i].sent.front(), self.sensors[i].came.front())
+            {
+                self.compare(i, sent, came);
             }
             while self.sensors[i].sent.len() > ON_THE_WAY {
                 self.miss(i);
             }
             let came = &mut self.sensors[i].came;
             came.drain(..came.len().saturating_sub(ON_THE_WAY));
+        }
+    }
+
+    /// The oldest sample on its way and the oldest arrival: one is settled, or both as one. A packet says its time in
+    /// whole µs, rounded down.
+    fn compare(&mut self, i: usize, sent: Sent, came: Arrival) {
+        let ahead = (sent.t - came.t).0;
+        if ahead < 0 {
+            return self.miss(i);
+        }
+        self.sensors[i].came.pop_front();
+        // Else a value held over from the packet before.
+        if ahead < 1000 {
+            self.sensors[i].sent.pop_front();
+            self.sensors[i].arrived(sent, came.at, self.slice);
+            self.sample(i, sent, Some(came.at));
         }
     }
 

@@ -36,6 +36,7 @@ pub struct Arrivals {
     samples: Samples,
     clock: WallClock,
     ring: Producer<Arrival>,
+    came: u64,
     /// What did not fit.
     unrecorded: u64,
 }
@@ -43,6 +44,8 @@ pub struct Arrivals {
 /// What came altogether.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Came {
+    /// Samples.
+    pub samples: u64,
     /// Packets missing by their sequence numbers, where they have such.
     pub lost_seq: Option<u64>,
     /// Damaged ones.
@@ -54,15 +57,16 @@ pub struct Came {
 impl Arrivals {
     /// Of a stream of this protocol.
     pub fn new(protocol: Protocol, clock: WallClock, ring: Producer<Arrival>) -> Arrivals {
-        Arrivals { samples: Samples::new(protocol), clock, ring, unrecorded: 0 }
+        Arrivals { samples: Samples::new(protocol), clock, ring, came: 0, unrecorded: 0 }
     }
 
     /// Takes in what has just been read.
     pub fn take(&mut self, bytes: &[u8]) {
         let at = self.clock.now();
-        let Arrivals { samples, ring, unrecorded, .. } = self;
+        let Arrivals { samples, ring, came, unrecorded, .. } = self;
         samples.feed(bytes, |sample| {
             let Some(t) = sample.t else { return };
+            *came += 1;
             *unrecorded += u64::from(ring.push(Arrival { kind: sample.kind, t, at }).is_err());
         });
     }
@@ -71,6 +75,7 @@ impl Arrivals {
     pub fn came(&self) -> Came {
         let counts = self.samples.counts();
         Came {
+            samples: self.came,
             lost_seq: counts.numbered.then_some(counts.lost),
             damaged: counts.damaged,
             unrecorded: self.unrecorded,
