@@ -60,8 +60,11 @@ pub struct Job {
     pub tap: Option<Tap>,
 }
 
-/// Takes bytes in as they arrive.
-pub struct Tap(pub Box<dyn FnMut(&[u8])>);
+/// Called with bytes as they arrive.
+pub type OnBytes = dyn FnMut(&[u8]);
+
+/// Takes in what a link receives.
+pub struct Tap(pub Box<OnBytes>);
 
 impl std::fmt::Debug for Tap {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

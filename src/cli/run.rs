@@ -119,6 +119,9 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
     if arguments.span == Some(SimTime::FOREVER) && arguments.speed == Speed::Max {
         return Err(Refusal("--for forever at --speed max never ends and never waits: give a time".into()));
     }
+    if arguments.cpu.is_some() && arguments.speed == Speed::Max {
+        return Err(Refusal("--cpu keeps the pacing thread to a processor, and --speed max paces nothing: leave out one of the two".into()));
+    }
     for output in outputs {
         wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
         wire::warnings(output.to.protocol, &plan.sensors)

@@ -4,10 +4,9 @@
 use super::reader::Arrival;
 use crate::report::Times;
 use crate::scene::Plan;
-use crate::schedule::Ticks;
 use crate::sensor::SensorKind;
 use crate::session::Record;
-use crate::time::SimTime;
+use crate::time::{Rate, SimTime};
 use std::collections::VecDeque;
 use std::fmt::Write;
 
@@ -29,7 +28,8 @@ struct Sent {
 #[derive(Debug)]
 pub struct Sensor {
     kind: SensorKind,
-    ticks: Ticks,
+    rate: Rate,
+    phase: SimTime,
     sent: VecDeque<Sent>,
     came: VecDeque<Arrival>,
     /// The last arrival: its slice and when.
@@ -132,7 +132,8 @@ impl Ledger {
     pub fn new(plan: &Plan, receives: bool, slice: SimTime, now: i64) -> Ledger {
         let sensor = |sensor: &crate::sensor::SensorPlan| Sensor {
             kind: sensor.kind,
-            ticks: Ticks { rate: sensor.rate, phase: sensor.phase },
+            rate: sensor.rate,
+            phase: sensor.phase,
             sent: VecDeque::new(),
             came: VecDeque::new(),
             last: None,
@@ -162,7 +163,7 @@ impl Ledger {
             }
             Record::Sample { kind, t, due, sent } => {
                 let Some(i) = self.sensors.iter().position(|sensor| sensor.kind == kind) else { return };
-                let period = (self.sensors[i].ticks.rate.period() * 1e9) as i64;
+                let period = (self.sensors[i].rate.period() * 1e9) as i64;
                 self.sensors[i].overdue += u64::from(sent.is_some_and(|sent| sent - due > period));
                 if let (0, Some(sent)) = (i, sent) {
                     self.late.record(sent - due);
@@ -241,9 +242,8 @@ impl Ledger {
     fn sample(&mut self, i: usize, sample: Sent, received: Option<i64>) {
         let sensor = &mut self.sensors[i];
         sensor.missed += u64::from(self.receives && received.is_none());
-        let Ticks { rate, phase } = sensor.ticks;
         // The newest tick that the packet can carry.
-        let k = rate.ticks_before(phase, sample.t + SimTime(1)).saturating_sub(1);
+        let k = sensor.rate.ticks_before(sensor.phase, sample.t + SimTime(1)).saturating_sub(1);
         let name = sensor.kind.name();
         self.line(name, k, sample.due, sample.sent, received);
     }

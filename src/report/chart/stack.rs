@@ -24,3 +24,24 @@ fn size(chart: &str, name: &str) -> f64 {
     let value = chart.split_once(&format!(" {name}=\"")).and_then(|(_, rest)| rest.split('"').next());
     value.and_then(|value| value.parse().ok()).unwrap_or(0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::chart::{Histogram, Panels, histogram, panels};
+
+    #[test]
+    fn a_stack_is_as_wide_as_the_widest_and_as_high_as_all() {
+        let charts = [
+            histogram(&Histogram { title: "one".into(), ..Histogram::default() }),
+            panels(&Panels { title: "two".into(), ..Panels::default() }),
+        ];
+        let whole = stacked(&charts);
+        let heights = charts.each_ref().map(|chart| size(chart, "height"));
+        assert!(heights.iter().all(|&height| height > 100.0));
+        assert_eq!(size(&whole, "height"), heights[0] + heights[1]);
+        assert_eq!(size(&whole, "width"), size(&charts[0], "width").max(size(&charts[1], "width")));
+        assert!(whole.contains(&format!("translate(0,{:.0})", heights[0])));
+        assert_eq!(whole.matches("<svg").count(), whole.matches("</svg>").count());
+    }
+}
