@@ -158,6 +158,58 @@ fn over_a_link_without_a_reader_of_ours_the_sending_end_is_measured_and_the_repo
     assert_eq!(output.status.code(), Some(0));
 }
 
+/// A port whose TX is connected to its RX, or not: the slave of a pty whose master gives back what it is given.
+fn port(plug: bool) -> (String, std::thread::JoinHandle<()>) {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    grantpt(&master).unwrap();
+    unlockpt(&master).unwrap();
+    let path = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
+    let slave = std::fs::File::open(&path).unwrap();
+    let echo = move || {
+        let mut bytes = [0; 4096];
+        // The last packets are given back before the slave closes, and then reading fails.
+        drop_when_opened(slave);
+        while let Ok(count @ 1..) = rustix::io::read(&master, &mut bytes) {
+            if plug {
+                rustix::io::write(&master, &bytes[..count]).unwrap();
+            }
+        }
+    };
+    (path, std::thread::spawn(echo))
+}
+
+/// Keeps the slave open until somebody else has had the time to open it.
+fn drop_when_opened(slave: std::fs::File) {
+    std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_secs(3));
+        drop(slave);
+    });
+}
+
+#[test]
+fn a_loopback_plug_brings_the_stream_back_and_its_absence_is_no_loss() {
+    for plug in [true, false] {
+        let (path, echo) = port(plug);
+        let to = format!("mpu@serial:{path},921600");
+        let output = ratetable(&["timing", "--for", "200ms", "--to", &to, "--json"]);
+        let report: Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", said(&output)));
+        let gyro = &report["sensors"][0];
+        assert_eq!(gyro["sent"], 200);
+        if plug {
+            assert_eq!(report["received_by"], "the port itself, through a loopback plug");
+            assert!(gyro["received"].as_u64().unwrap() > 0, "{gyro}");
+            assert_eq!(gyro["received"].as_u64().unwrap() + gyro["missed"].as_u64().unwrap(), 200);
+            assert!(gyro["transit_us"]["p50"].as_f64().unwrap() > 0.0);
+        } else {
+            assert_eq!((&report["received_by"], &gyro["missed"]), (&Value::Null, &Value::Null));
+            assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        }
+        echo.join().unwrap();
+    }
+}
+
 #[test]
 fn what_cannot_be_measured_says_what_would_be_right() {
     let folder = tempfile::tempdir().unwrap();

@@ -60,6 +60,8 @@ struct Run {
     interrupted: bool,
     /// The command's exit code, once it has ended by itself.
     ended: Option<i32>,
+    /// Whether what comes back on the first link goes to the job's tap.
+    tapped: bool,
     /// Tasks that read what comes back; each holds its link open.
     ears: Vec<tokio::task::JoinHandle<()>>,
     absence: Duration,
@@ -131,6 +133,7 @@ impl Run {
             heard: Rc::new(RefCell::new(heard)),
             interrupted: false,
             ended: None,
+            tapped: false,
             ears: Vec::new(),
             absence,
             left: None,
@@ -221,6 +224,7 @@ impl Run {
             let Some(receiver) = link.receiver() else { continue };
             if let Some(tap) = self.job.tap.take_if(|_| i == 0) {
                 self.ears.push(tokio::task::spawn_local(answers::tapped(receiver, tap)));
+                self.tapped = true;
                 continue;
             }
             let ear = Ear {
@@ -340,7 +344,7 @@ impl Run {
                 pinned_cpu: granted.cpu,
             });
         drop(pacer.senders);
-        if !self.heard.borrow().estimates.is_empty() {
+        if self.tapped || !self.heard.borrow().estimates.is_empty() {
             tokio::time::sleep(LAST_ANSWERS).await;
         }
         for ear in &self.ears {
