@@ -35,29 +35,29 @@ fn a_wall_clock_never_wakes_early() {
 }
 
 #[test]
-fn the_margin_comes_to_cover_all_but_one_wake_in_twenty() {
-    // Wakes 20.0 to 39.9 µs late, each as often as the other: the 95 % quantile is 39 µs.
+fn the_margin_comes_to_cover_all_but_one_wake_in_a_hundred() {
+    // Wakes 20.0 to 39.9 µs late, each as often as the other: the 99 % quantile is 39.8 µs.
     let late: Vec<_> = (0..200).map(|i| 20_000 + (i * 73 % 200) * 100).collect();
     let mut clock = Precise::new(VirtualClock::waking_late(late), Policy::Adaptive);
     waits(&mut clock, PERIOD, 5_000);
-    let ticks = 10_000;
+    let ticks = 20_000;
     let late = (5_001..=5_000 + ticks).filter(|k| {
         clock.wait_until(k * PERIOD);
         clock.now() > k * PERIOD
     });
     let late = late.count() as f64 / ticks as f64;
-    assert!((late - 0.05).abs() < 0.01, "{late} of the waits ended late");
+    assert!((late - 0.01).abs() < 0.003, "{late} of the waits ended late");
     let margin = clock.margin().ns();
-    assert!((38_000..41_500).contains(&margin), "{margin} ns");
+    assert!((38_500..43_000).contains(&margin), "{margin} ns");
 }
 
 #[test]
 fn the_margin_follows_a_machine_that_changes_and_stays_within_its_bounds() {
-    let late = [vec![5_000_000; 1_000], vec![0; 2_000]].concat();
+    let late = [vec![5_000_000; 1_000], vec![0; 4_000]].concat();
     let mut clock = Precise::new(VirtualClock::waking_late(late), Policy::Adaptive);
     waits(&mut clock, 10 * PERIOD, 1_000);
     assert_eq!(clock.margin().ns() as f64, Margin::BOUNDS.1, "a machine that is always late");
-    for k in 0..2_000 {
+    for k in 0..4_000 {
         clock.wait_until(clock.now() + (1 + k % 3) * PERIOD);
     }
     assert_eq!(clock.margin().ns() as f64, Margin::BOUNDS.0, "one that never is");
