@@ -4,6 +4,7 @@ mod check;
 mod demo;
 mod generate;
 mod list;
+mod listen;
 mod options;
 mod progress;
 mod run;
@@ -33,6 +34,8 @@ enum Command {
     Generate(generate::Arguments),
     /// Read a scene and show the plan: sensors, noise, bytes a second, warnings
     Check(check::Arguments),
+    /// Measure anybody's stream: rates, intervals, losses and damage of each sensor
+    Listen(listen::Arguments),
     /// Compare the attitude methods: error against cost on many motions, and what breaks each
     Study(study::Arguments),
     /// Show what there is: scenes, parts, motions, methods, protocols, links, ports
@@ -76,6 +79,7 @@ pub fn main() -> ExitCode {
         Command::Timing(arguments) => timing::timing(&arguments),
         Command::Generate(arguments) => generate::generate(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Listen(arguments) => listen::listen(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::List(arguments) => list::list(&arguments),
     };

@@ -25,6 +25,7 @@ pub mod earth;
 pub mod geometry;
 pub mod keys;
 pub mod link;
+pub mod listen;
 pub mod motion;
 pub mod os;
 pub mod player;

@@ -1,11 +1,13 @@
 //! Results as data, tables and charts: they read what a run left behind and never reach into one.
 
 pub mod chart;
+mod heard;
 mod limit;
 mod text;
 mod times;
 mod timing;
 
+pub use heard::{HeardLink, HeardReport, HeardSensor};
 pub use limit::{Limit, LimitError};
 pub use text::{number, table};
 pub use times::Times;

@@ -1,13 +1,15 @@
 //! The `mavlink` crate as the other side: the same bytes, and it reads ours.
 
 use ::mavlink::dialects::common::{
-    ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, HEARTBEAT_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags,
-    MavAutopilot, MavMessage, MavModeFlag, MavState, MavType, SYSTEM_TIME_DATA,
+    ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, HEARTBEAT_DATA, HIGHRES_IMU_DATA, HIL_SENSOR_DATA,
+    HighresImuUpdatedFlags, HilSensorUpdatedFlags, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
+    RAW_IMU_DATA, SCALED_IMU_DATA, SYSTEM_TIME_DATA,
 };
 use ::mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion};
 use proptest::prelude::*;
 use ratetable_protocols::mavlink::{
-    self, Header, Message, Version, attitude, attitude_quaternion, heartbeat, hil_sensor, system_time,
+    self, Header, Message, Version, attitude, attitude_quaternion, heartbeat, highres_imu, hil_sensor,
+    raw_imu, scaled_imu, system_time,
 };
 
 type Pair = (Message, MavMessage);
@@ -107,8 +109,101 @@ fn hil_sensors() -> impl Strategy<Value = Pair> {
     })
 }
 
+fn highres_imus() -> impl Strategy<Value = Pair> {
+    let flags = any::<u16>().prop_map(HighresImuUpdatedFlags::from_bits_truncate);
+    (any::<(u64, [f32; 13], u8)>(), flags).prop_map(|((time_usec, f, id), flags)| {
+        let ours = highres_imu::Repr {
+            time_usec,
+            accel: [f[0], f[1], f[2]],
+            gyro: [f[3], f[4], f[5]],
+            mag: [f[6], f[7], f[8]],
+            abs_pressure: f[9],
+            diff_pressure: f[10],
+            pressure_alt: f[11],
+            temperature: f[12],
+            fields_updated: flags.bits(),
+            id,
+        };
+        let theirs = HIGHRES_IMU_DATA {
+            time_usec,
+            xacc: f[0],
+            yacc: f[1],
+            zacc: f[2],
+            xgyro: f[3],
+            ygyro: f[4],
+            zgyro: f[5],
+            xmag: f[6],
+            ymag: f[7],
+            zmag: f[8],
+            abs_pressure: f[9],
+            diff_pressure: f[10],
+            pressure_alt: f[11],
+            temperature: f[12],
+            fields_updated: flags,
+            id,
+        };
+        (Message::HighresImu(ours), MavMessage::HIGHRES_IMU(theirs))
+    })
+}
+
+fn raw_imus() -> impl Strategy<Value = Pair> {
+    any::<(u64, [i16; 9], u8, i16)>().prop_map(
+        |(time_usec, [xacc, yacc, zacc, xgyro, ygyro, zgyro, xmag, ymag, zmag], id, temperature)| {
+            let (accel, gyro, mag) = ([xacc, yacc, zacc], [xgyro, ygyro, zgyro], [xmag, ymag, zmag]);
+            let ours = raw_imu::Repr { time_usec, accel, gyro, mag, id, temperature };
+            let theirs = RAW_IMU_DATA {
+                time_usec,
+                xacc,
+                yacc,
+                zacc,
+                xgyro,
+                ygyro,
+                zgyro,
+                xmag,
+                ymag,
+                zmag,
+                id,
+                temperature,
+            };
+            (Message::RawImu(ours), MavMessage::RAW_IMU(theirs))
+        },
+    )
+}
+
+fn scaled_imus() -> impl Strategy<Value = Pair> {
+    any::<(u32, [i16; 9], i16)>().prop_map(
+        |(time_boot_ms, [xacc, yacc, zacc, xgyro, ygyro, zgyro, xmag, ymag, zmag], temperature)| {
+            let (accel, gyro, mag) = ([xacc, yacc, zacc], [xgyro, ygyro, zgyro], [xmag, ymag, zmag]);
+            let ours = scaled_imu::Repr { time_boot_ms, accel, gyro, mag, temperature };
+            let theirs = SCALED_IMU_DATA {
+                time_boot_ms,
+                xacc,
+                yacc,
+                zacc,
+                xgyro,
+                ygyro,
+                zgyro,
+                xmag,
+                ymag,
+                zmag,
+                temperature,
+            };
+            (Message::ScaledImu(ours), MavMessage::SCALED_IMU(theirs))
+        },
+    )
+}
+
 fn pairs() -> impl Strategy<Value = Pair> {
-    prop_oneof![heartbeats(), system_times(), attitudes(), attitude_quaternions(), hil_sensors(),]
+    prop_oneof![
+        heartbeats(),
+        system_times(),
+        attitudes(),
+        attitude_quaternions(),
+        hil_sensors(),
+        highres_imus(),
+        raw_imus(),
+        scaled_imus(),
+    ]
 }
 
 /// What the crate writes.

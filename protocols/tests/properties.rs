@@ -26,7 +26,7 @@ fn any_packet() -> impl Strategy<Value = Packet> {
 /// Any message, made from any payload without not-a-number.
 #[allow(clippy::eq_op, reason = "not-a-number is what is not equal to itself")]
 fn any_message() -> impl Strategy<Value = Message> {
-    let ids = prop_oneof![Just(0), Just(2), Just(30), Just(31), Just(107)];
+    let ids = prop_oneof![Just(0), Just(2), Just(26), Just(27), Just(30), Just(31), Just(105), Just(107)];
     (ids, vec(any::<u8>(), 65))
         .prop_map(|(id, bytes)| Message::parse(id, &bytes).unwrap())
         .prop_filter("not-a-number is not equal to itself", |message| message == message)
@@ -46,6 +46,15 @@ fn as_said_in(version: Version, message: Message) -> Message {
     match (version, message) {
         (Version::V1, Message::HilSensor(repr)) => {
             Message::HilSensor(mavlink::hil_sensor::Repr { id: 0, ..repr })
+        }
+        (Version::V1, Message::HighresImu(repr)) => {
+            Message::HighresImu(mavlink::highres_imu::Repr { id: 0, ..repr })
+        }
+        (Version::V1, Message::RawImu(repr)) => {
+            Message::RawImu(mavlink::raw_imu::Repr { id: 0, temperature: 0, ..repr })
+        }
+        (Version::V1, Message::ScaledImu(repr)) => {
+            Message::ScaledImu(mavlink::scaled_imu::Repr { temperature: 0, ..repr })
         }
         (Version::V1, Message::AttitudeQuaternion(repr)) => {
             Message::AttitudeQuaternion(mavlink::attitude_quaternion::Repr {

@@ -54,6 +54,11 @@ pub fn output(text: &str) -> Result<Output, String> {
     Ok(Output::to(text.parse::<Destination>()?))
 }
 
+/// Where packets come from.
+pub fn destination(text: &str) -> Result<Destination, String> {
+    text.parse()
+}
+
 /// `--limit`.
 pub fn limit(text: &str) -> Result<Limit, String> {
     text.parse().map_err(|error: crate::report::LimitError| error.to_string())

@@ -1,5 +1,6 @@
 //! Live progress on standard error, where that is a terminal.
 
+use crate::listen;
 use crate::session::Progress;
 use crate::time::SimTime;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -43,6 +44,21 @@ impl Bar {
         let lost = if *dropped > 0 { format!(", {dropped} samples dropped") } else { String::new() };
         self.0.set_message(format!("{:.1} s, {packets} packets{lost}{error}", t.seconds()));
         self.0.set_position((t.0 / MILLIS) as u64);
+    }
+
+    /// Of a stream that is listened to.
+    pub fn heard(&self, progress: &listen::Progress<'_>) {
+        let listen::Progress { elapsed, meter, rates } = progress;
+        let rate = |(stream, hz): (&listen::Stream, &f64)| format!("{} {hz:.1} Hz", stream.name());
+        let rates: Vec<_> = meter.streams().iter().zip(*rates).map(rate).collect();
+        let counts = meter.counts();
+        let lost = match (counts.lost, counts.damaged) {
+            (0, 0) => String::new(),
+            (lost, damaged) => format!(", {lost} lost, {damaged} damaged"),
+        };
+        let what = if rates.is_empty() { format!("{} bytes", counts.bytes) } else { rates.join(", ") };
+        self.0.set_message(format!("{:.1} s, {what}{lost}", elapsed.as_secs_f64()));
+        self.0.set_position(u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX));
     }
 
     /// Of a dataset.

@@ -209,7 +209,8 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
     }
 }
 
-fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -> Host {
+/// What this runs on, what the pacing thread was granted, and how it waited.
+pub fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -> Host {
     let name = rustix::system::uname();
     let cpus = std::thread::available_parallelism().map_or(1, |cpus| cpus.get());
     let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());

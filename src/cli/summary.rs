@@ -1,6 +1,6 @@
 //! The report of a run as a person reads it.
 
-use crate::report::{Report, number, table};
+use crate::report::{HeardReport, Report, number, table};
 use crate::session::Outcome;
 use crate::time::SimTime;
 
@@ -81,4 +81,64 @@ fn links(report: &Report) -> String {
         &["link", "packets", "bytes", "dropped", "missed by receiver", "of baud rate"],
         &rows.collect::<Vec<_>>(),
     )
+}
+
+/// A stream that was listened to, on a screenful.
+pub fn heard(report: &HeardReport, interrupted: bool) -> String {
+    let ended = if interrupted { ", stopped by the user" } else { "" };
+    let span = report.duration_s.map_or("recorded".into(), |span| format!("{} s", number(span)));
+    let mut text = format!("\n{span}{ended}\n\n");
+    if !report.sensors.is_empty() {
+        text += &heard_sensors(report);
+        text.push('\n');
+    }
+    for link in &report.links {
+        let rate = |value: Option<f64>, unit| {
+            value.map_or(String::new(), |value| format!(", {}{unit}", number(value)))
+        };
+        let lost = link.lost_seq.map_or("no sequence numbers".into(), |lost| format!("{lost} lost"));
+        text += &format!(
+            "{}: {} packets, {} bytes{}{}; {lost}, {} damaged\n",
+            link.name,
+            link.packets,
+            link.bytes,
+            rate(link.bytes_per_s, " bytes/s"),
+            rate(link.utilisation.map(|share| 100.0 * share), " % of the baud rate"),
+            link.crc_errors,
+        );
+        let others: Vec<_> = link.foreign.iter().map(|(name, count)| format!("{name} {count}")).collect();
+        if !others.is_empty() {
+            text += &format!("without samples: {}\n", others.join(", "));
+        }
+    }
+    for failure in &report.failed {
+        text += &format!("FAILED: {failure}\n");
+    }
+    text
+}
+
+fn heard_sensors(report: &HeardReport) -> String {
+    let live = report.sensors.iter().any(|sensor| sensor.received_hz.is_some());
+    let mut heading = vec!["sensor", "received", "missing", "sampled Hz"];
+    if live {
+        heading.extend(["received Hz", "interval µs p50", "p99", "max", "jitter µs p99", "bursts"]);
+    }
+    let optional = |value: Option<f64>| value.map_or("-".into(), number);
+    let hz = |rate: Option<f64>| rate.map_or("-".into(), |rate| format!("{rate:.3}"));
+    let rows = report.sensors.iter().map(|sensor| {
+        let missing = sensor.missing.map_or("-".into(), |missing| missing.to_string());
+        let mut row = vec![sensor.name.clone(), sensor.received.to_string(), missing, hz(sensor.rate_hz)];
+        if live {
+            let interval = sensor.interval_us;
+            row.push(hz(sensor.received_hz));
+            row.extend(
+                [interval.map(|us| us.p50), interval.map(|us| us.p99), interval.map(|us| us.max)]
+                    .map(optional),
+            );
+            row.push(optional(sensor.jitter_us.map(|us| us.p99)));
+            row.push(sensor.burst_share.map_or("-".into(), |share| format!("{} %", number(100.0 * share))));
+        }
+        row
+    });
+    table(&heading, &rows.collect::<Vec<_>>())
 }

@@ -6,7 +6,7 @@ use bytes::{BufMut, BytesMut};
 use tokio::io::{AsyncRead, AsyncReadExt};
 use tokio::sync::mpsc;
 
-use super::{serial, tcp, tty, udp};
+use super::{listening, serial, tcp, tty, udp};
 use crate::os::Readable;
 
 /// The receiving side of a link, for one task.
@@ -18,6 +18,8 @@ pub(super) enum Source {
     Serial(serial::In),
     Tcp(tcp::In),
     Udp(udp::In),
+    /// A file that was written before.
+    Recording(listening::Recording),
     Memory(mpsc::UnboundedReceiver<Vec<u8>>),
 }
 
@@ -32,6 +34,7 @@ impl Receiver {
             Source::Serial(port) => port.recv(buffer).await,
             Source::Tcp(input) => input.recv(buffer).await,
             Source::Udp(input) => input.recv(buffer).await,
+            Source::Recording(file) => file.recv(buffer).await,
             Source::Memory(answers) => {
                 let bytes = answers.recv().await.unwrap_or_default();
                 buffer.extend_from_slice(&bytes);

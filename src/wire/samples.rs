@@ -12,6 +12,7 @@ use crate::geometry::{Axes, Body, Vector};
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// One sample of one sensor, as a packet says it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +42,27 @@ impl Source {
     /// The only sensor of its kind on the link.
     const fn only(message: &'static str) -> Source {
         Source { message, set: [0; 3] }
+    }
+}
+
+impl fmt::Display for Source {
+    /// `mpu`, `hil_sensor 1/51/0`: the message, and where it matters its system, component and set.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Source { message, set: [system, component, set] } = self;
+        match self.set {
+            [0, 0, 0] => f.write_str(message),
+            _ => write!(f, "{message} {system}/{component}/{set}"),
+        }
+    }
+}
+
+/// A word that makes a sender begin which waits for one: a ground station's heartbeat in MAVLink, and in the other
+/// protocols bytes that mean nothing.
+pub fn greeting(protocol: Protocol, seq: u8) -> Vec<u8> {
+    match protocol {
+        Protocol::Mavlink => mavlink::ground_station(seq),
+        Protocol::Mpu => vec![0],
+        Protocol::Csv | Protocol::Jsonl => b"\n".to_vec(),
     }
 }
 

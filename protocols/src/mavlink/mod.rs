@@ -31,7 +31,10 @@ pub mod attitude;
 pub mod attitude_quaternion;
 mod decoder;
 pub mod heartbeat;
+pub mod highres_imu;
 pub mod hil_sensor;
+pub mod raw_imu;
+pub mod scaled_imu;
 pub mod system_time;
 
 pub use decoder::Decoder;
@@ -181,10 +184,16 @@ messages! {
     Heartbeat(heartbeat),
     /// Date and time since boot.
     SystemTime(system_time),
+    /// An autopilot's own sensor in thousandths of units.
+    ScaledImu(scaled_imu),
+    /// An autopilot's own sensor in counts.
+    RawImu(raw_imu),
     /// Attitude as Euler angles.
     Attitude(attitude),
     /// Attitude as a quaternion.
     AttitudeQuaternion(attitude_quaternion),
+    /// An autopilot's own sensors.
+    HighresImu(highres_imu),
     /// The readings of an emulated vehicle.
     HilSensor(hil_sensor),
 }

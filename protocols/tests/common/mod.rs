@@ -137,6 +137,33 @@ pub fn mavlink_message(json: &Value) -> Message {
             fields_updated: int(&f["fields_updated"]),
             id: int(&f["id"]),
         }),
+        "highres_imu" => Message::HighresImu(mavlink::highres_imu::Repr {
+            time_usec: int(&f["time_usec"]),
+            accel: floats(&f["accel"]),
+            gyro: floats(&f["gyro"]),
+            mag: floats(&f["mag"]),
+            abs_pressure: float(&f["abs_pressure"]),
+            diff_pressure: float(&f["diff_pressure"]),
+            pressure_alt: float(&f["pressure_alt"]),
+            temperature: float(&f["temperature"]),
+            fields_updated: int(&f["fields_updated"]),
+            id: int(&f["id"]),
+        }),
+        "raw_imu" => Message::RawImu(mavlink::raw_imu::Repr {
+            time_usec: int(&f["time_usec"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            mag: ints(&f["mag"]),
+            id: int(&f["id"]),
+            temperature: int(&f["temperature"]),
+        }),
+        "scaled_imu" => Message::ScaledImu(mavlink::scaled_imu::Repr {
+            time_boot_ms: int(&f["time_boot_ms"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            mag: ints(&f["mag"]),
+            temperature: int(&f["temperature"]),
+        }),
         other => panic!("no message {other}"),
     }
 }

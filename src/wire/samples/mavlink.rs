@@ -1,13 +1,28 @@
-//! `mavlink`, versions 1 and 2: HIL_SENSOR, one sample for each sensor that it says is new.
+//! `mavlink`, versions 1 and 2: HIL_SENSOR as simulators send it, HIGHRES_IMU, SCALED_IMU and RAW_IMU as autopilots
+//! send what their own sensors read; one sample for each sensor that a message says is new.
 
 use super::{Counts, Sample, Source};
+use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::{MASKS, MICROTESLA_A_GAUSS};
-use ratetable_protocols::mavlink::{Decoder, Message, Received, hil_sensor};
+use glam::DVec3;
+use ratetable_protocols::mavlink::{
+    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu,
+};
 use ratetable_protocols::{Error, Losses};
 use std::collections::BTreeMap;
+
+/// The heartbeat of a ground station: MAV_TYPE_GCS, no autopilot, active.
+pub(super) fn ground_station(seq: u8) -> Vec<u8> {
+    let header = Header { version: Version::V2, seq, system: 255, component: 190 };
+    let beat =
+        heartbeat::Repr { kind: 6, autopilot: 8, system_status: 4, mavlink_version: 3, ..Default::default() };
+    let mut buffer = [0; MAX_LEN];
+    let len = encode(&header, &Message::Heartbeat(beat), &mut buffer).unwrap_or(0);
+    buffer[..len].to_vec()
+}
 
 #[derive(Default)]
 pub(super) struct Reader {
@@ -46,26 +61,98 @@ impl Senders {
         counts.packets += 1;
         let sender = [header.system, header.component];
         counts.lost += u64::from(self.0.entry(sender).or_default().observe(header.seq));
-        match message {
-            Some(Message::HilSensor(seen)) => hil_sensor(sender, &seen, each),
-            Some(other) => counts.foreign(other.name()),
-            None => counts.foreign(&format!("message {id}")),
+        let name = message.map(|message| message.name());
+        match message.and_then(|message| Inertial::of(&message, sender)) {
+            Some(inertial) if inertial.is_fresh() => inertial.hand_on(each),
+            _ => match name {
+                Some(name) => counts.foreign(name),
+                None => counts.foreign(&format!("message {id}")),
+            },
         }
     }
 }
 
-fn hil_sensor([system, component]: [u8; 2], seen: &hil_sensor::Repr, each: &mut impl FnMut(Sample)) {
-    let t = i64::try_from(seen.time_usec).ok().and_then(|us| us.checked_mul(1000)).map(SimTime);
-    let source = Source { message: "hil_sensor", set: [system, component, seen.id] };
-    for (kind, values, unit) in [
-        (SensorKind::Gyro, seen.gyro, 1.0),
-        (SensorKind::Accel, seen.accel, 1.0),
-        (SensorKind::Mag, seen.mag, MICROTESLA_A_GAUSS),
-    ] {
-        if seen.fields_updated & MASKS[kind as usize] != 0 {
-            let [x, y, z] = values.map(|value| f64::from(value) * unit);
-            let value = [x, y, z].iter().all(|value| value.is_finite()).then(|| Vector::new(x, y, z));
+/// What a message with readings says, of gyro, accel and mag.
+struct Inertial {
+    source: Source,
+    t: Option<SimTime>,
+    /// Which are new.
+    fresh: [bool; 3],
+    /// In the message's own units.
+    values: [[f64; 3]; 3],
+    /// What those are in ours; `None` for counts.
+    units: Option<[f64; 3]>,
+}
+
+impl Inertial {
+    /// `None` for messages without readings.
+    fn of(message: &Message, [system, component]: [u8; 2]) -> Option<Inertial> {
+        let source = |set| Source { message: message.name(), set: [system, component, set] };
+        let gauss = [1.0, 1.0, MICROTESLA_A_GAUSS];
+        let (id, ns, fresh, values, units) = match message {
+            Message::HilSensor(seen) => {
+                let fresh = MASKS.map(|mask| seen.fields_updated & mask != 0);
+                (
+                    seen.id,
+                    micros(seen.time_usec),
+                    fresh,
+                    floats([seen.gyro, seen.accel, seen.mag]),
+                    Some(gauss),
+                )
+            }
+            Message::HighresImu(seen) => {
+                let masks = [highres_imu::GYRO, highres_imu::ACCEL, highres_imu::MAG];
+                let fresh = masks.map(|mask| seen.fields_updated & mask != 0);
+                (
+                    seen.id,
+                    micros(seen.time_usec),
+                    fresh,
+                    floats([seen.gyro, seen.accel, seen.mag]),
+                    Some(gauss),
+                )
+            }
+            Message::ScaledImu(seen) => {
+                let milli = [1e-3, 1e-3 * STANDARD_GRAVITY, 1e-3 * MICROTESLA_A_GAUSS];
+                let ns = Some(i64::from(seen.time_boot_ms) * 1_000_000);
+                (0, ns, present(seen.mag), ints([seen.gyro, seen.accel, seen.mag]), Some(milli))
+            }
+            Message::RawImu(seen) => {
+                let ns = micros(seen.time_usec);
+                (seen.id, ns, present(seen.mag), ints([seen.gyro, seen.accel, seen.mag]), None)
+            }
+            _ => return None,
+        };
+        Some(Inertial { source: source(id), t: ns.map(SimTime), fresh, values, units })
+    }
+
+    fn is_fresh(&self) -> bool {
+        self.fresh.contains(&true)
+    }
+
+    fn hand_on(&self, each: &mut impl FnMut(Sample)) {
+        let Inertial { source, t, fresh, values, units } = *self;
+        for kind in SensorKind::ALL.into_iter().filter(|kind| fresh[*kind as usize]) {
+            let vector = |units: [f64; 3]| DVec3::from_array(values[kind as usize]) * units[kind as usize];
+            let value = units.map(vector).filter(|value| value.is_finite()).map(Vector::from_vec);
             each(Sample { kind, source, t, value });
         }
     }
+}
+
+/// µs in ns, where that can be said.
+fn micros(us: u64) -> Option<i64> {
+    i64::try_from(us).ok()?.checked_mul(1000)
+}
+
+/// A message without a mask has gyro and accel; a field of exactly nothing is a magnetometer that is not there.
+fn present(mag: [i16; 3]) -> [bool; 3] {
+    [true, true, mag != [0; 3]]
+}
+
+fn floats(values: [[f32; 3]; 3]) -> [[f64; 3]; 3] {
+    values.map(|vector| vector.map(f64::from))
+}
+
+fn ints(values: [[i16; 3]; 3]) -> [[f64; 3]; 3] {
+    values.map(|vector| vector.map(f64::from))
 }

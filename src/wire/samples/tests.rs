@@ -6,6 +6,7 @@ use crate::sensor::Reading;
 use crate::wire::tests::{NOISY, plan, play};
 use crate::wire::{Layout, Packet};
 use proptest::prelude::*;
+use ratetable_protocols::mavlink::{self, Header, Message, Version, highres_imu, raw_imu, scaled_imu};
 use std::sync::OnceLock;
 
 /// Sensors at rates that have nothing to do with one another, each axis and sensor with values of its own.
@@ -169,6 +170,62 @@ fn mavlink_gives_only_what_a_message_says_is_new() {
     }
     let names: Vec<_> = counts.foreign.iter().map(|(name, count)| (name.as_str(), *count)).collect();
     assert_eq!(names, [("heartbeat", 3), ("system_time", 3)]);
+}
+
+#[test]
+fn what_autopilots_send_of_their_own_sensors_is_read_in_our_units() {
+    let message = |message: &Message| {
+        let header = Header { version: Version::V2, seq: 0, system: 1, component: 1 };
+        let mut bytes = [0; mavlink::MAX_LEN];
+        let len = mavlink::encode(&header, message, &mut bytes).unwrap();
+        read(Samples::new(Protocol::Mavlink), &bytes[..len], 300)
+    };
+    let scaled = |mag| scaled_imu::Repr {
+        time_boot_ms: 1500,
+        accel: [0, 500, -1000],
+        gyro: [250, 0, -125],
+        mag,
+        temperature: 0,
+    };
+    let highres = |fields_updated| highres_imu::Repr {
+        time_usec: 1_500_000,
+        accel: [0.0, 4.0, -9.75],
+        gyro: [0.25, 0.0, -0.125],
+        mag: [0.25, 0.0, 0.5],
+        fields_updated,
+        ..Default::default()
+    };
+    let raw = raw_imu::Repr { time_usec: 1_500_000, mag: [1, 2, 3], id: 2, ..Default::default() };
+    let (gyro, mag) = (Vector::new(0.25, 0.0, -0.125), Vector::new(25.0, 0.0, 50.0));
+    let half_g = Vector::new(0.0, 0.5, -1.0) * crate::earth::STANDARD_GRAVITY;
+    let all = highres_imu::GYRO | highres_imu::ACCEL | highres_imu::MAG;
+    for (sent, values) in [
+        (Message::ScaledImu(scaled([250, 0, 500])), [Some(gyro), Some(half_g), Some(mag)].to_vec()),
+        (Message::ScaledImu(scaled([0; 3])), [Some(gyro), Some(half_g)].to_vec()),
+        (
+            Message::HighresImu(highres(all)),
+            [Some(gyro), Some(Vector::new(0.0, 4.0, -9.75)), Some(mag)].to_vec(),
+        ),
+        (Message::HighresImu(highres(highres_imu::MAG)), [Some(mag)].to_vec()),
+        (Message::RawImu(raw), [None; 3].to_vec()),
+    ] {
+        let (samples, counts) = message(&sent);
+        assert_eq!(samples.len(), values.len(), "{sent:?}");
+        assert!(
+            counts.foreign.is_empty()
+                && samples.iter().all(|sample| sample.t == Some(SimTime(1_500_000_000)))
+        );
+        for (sample, value) in samples.iter().zip(values) {
+            let off = |value: Vector<Body>| (value - sample.value.unwrap()).length();
+            assert!(
+                value.map_or(sample.value.is_none(), |value| off(value) < 1e-12),
+                "{sample:?} of {value:?}"
+            );
+            assert_eq!(sample.source.message, sent.name());
+        }
+    }
+    let (samples, counts) = message(&Message::HighresImu(highres(0)));
+    assert!(samples.is_empty() && counts.foreign["highres_imu"] == 1, "nothing new in it");
 }
 
 /// A stream of each numbered protocol.

@@ -1,0 +1,168 @@
+//! `ratetable listen`: the meter on anybody's stream.
+
+use super::progress::Bar;
+use super::{Refusal, Verdict, options, say, summary};
+use crate::dataset;
+use crate::link::{self, Address};
+use crate::listen::{self, Event, Heard, Job, Meter};
+use crate::report::chart::{Distribution, Histogram, Marker, histogram};
+use crate::report::{HeardLink, HeardReport, HeardSensor, Interval, Late, Limit, number};
+use crate::scene::Destination;
+use crate::sensor::SensorKind;
+use crate::time::SimTime;
+use std::path::PathBuf;
+use std::time::Duration;
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// What to listen to, such as mpu@/dev/ttyUSB0,921600, mavlink@udpin:14550 or csv@file:readings.csv
+    #[arg(value_name = "PROTOCOL@LINK", value_parser = options::destination)]
+    from: Destination,
+    /// For how long from the first bytes on [default: until the sender leaves, or Ctrl-C]
+    #[arg(long = "for", value_name = "TIME|forever", value_parser = options::span)]
+    span: Option<SimTime>,
+    /// How long to wait for the first packet; 0 waits without end
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = options::wait)]
+    wait: Duration,
+    /// Fail (exit 1) unless a field of the report keeps to this, such as 'sensors.gyro.jitter_us.p99<500'
+    #[arg(long = "limit", value_name = "FIELD<VALUE", value_parser = options::limit)]
+    limit: Vec<Limit>,
+    /// Write the report and a chart of the intervals into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the output folder if there is one
+    #[arg(long)]
+    force: bool,
+    /// Print the report as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    let shape = serde_json::to_value(shape(&arguments.from))?;
+    arguments.limit.iter().try_for_each(|limit| limit.check(&shape))?;
+    if let Some(dir) = &arguments.out {
+        dataset::may_write(dir, arguments.force)?;
+    }
+    let span = arguments.span.filter(|span| *span != SimTime::FOREVER);
+    let job = Job {
+        protocol: arguments.from.protocol,
+        address: arguments.from.address.clone(),
+        span: span.map(|span| Duration::from_nanos(span.0.unsigned_abs())),
+        wait: arguments.wait,
+    };
+    // Asked before: a pty is gone when its sender is.
+    let baud = match &arguments.from.address {
+        Address::Serial { path, .. } if link::is_pty(path) => None,
+        address => address.baud(),
+    };
+    let heard = hear(&job, span.unwrap_or(SimTime::FOREVER))?;
+    let report = report(&arguments.from, &heard, baud, &arguments.limit)?;
+    eprint!("{}", summary::heard(&report, heard.interrupted));
+    if let Some(dir) = &arguments.out {
+        let json = serde_json::to_string_pretty(&report)? + "\n";
+        let chart = intervals(&arguments.from, &heard.meter, &report.sensors);
+        let files = [("report.json", json.into_bytes()), ("intervals.svg", chart.into_bytes())];
+        dataset::put_all(dir, arguments.force, &files)?;
+        eprintln!("{}: written", dir.display());
+    }
+    if arguments.json {
+        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+    }
+    Ok(if report.ok { Verdict::Fine } else { Verdict::Failed })
+}
+
+fn hear(job: &Job, end: SimTime) -> Result<Heard, Refusal> {
+    let bar = Bar::new(end);
+    let heard = listen::listen(job, &mut |event| match event {
+        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
+        Event::Ready(name) => bar.line(&format!("listening: {name}")),
+        Event::Progress(progress) => bar.heard(&progress),
+    });
+    bar.clear();
+    Ok(heard?)
+}
+
+/// A report with every field that a stream can have: limits are checked against it before anything is opened.
+fn shape(from: &Destination) -> HeardReport {
+    let sensor = |name: String| HeardSensor {
+        name,
+        rate_hz: Some(0.0),
+        received_hz: Some(0.0),
+        missing: Some(0),
+        burst_share: Some(0.0),
+        interval_us: Some(Interval::default()),
+        sample_interval_us: Some(Interval::default()),
+        jitter_us: Some(Late::default()),
+        ..HeardSensor::default()
+    };
+    let more = |kind: SensorKind| (2..=4).map(move |n| format!("{kind}-{n}"));
+    let names = SensorKind::ALL.into_iter().flat_map(|kind| [kind.to_string()].into_iter().chain(more(kind)));
+    let link = HeardLink { to: from.to_string(), ..HeardLink::default() };
+    empty(names.map(sensor).collect(), vec![link])
+}
+
+fn empty(sensors: Vec<HeardSensor>, links: Vec<HeardLink>) -> HeardReport {
+    HeardReport {
+        version: env!("CARGO_PKG_VERSION").into(),
+        ok: true,
+        failed: Vec::new(),
+        duration_s: None,
+        host: super::run::host(false, false, None),
+        sensors,
+        links,
+    }
+}
+
+fn report(
+    from: &Destination,
+    heard: &Heard,
+    baud: Option<u32>,
+    limits: &[Limit],
+) -> Result<HeardReport, Refusal> {
+    let meter = &heard.meter;
+    let links = vec![meter.link(from.to_string(), heard.name.clone(), baud)];
+    let mut report = HeardReport { duration_s: meter.duration_s(), ..empty(meter.sensors(), links) };
+    let value = serde_json::to_value(&report)?;
+    report.failed = faults(&report);
+    report.failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
+    report.ok = report.failed.is_empty();
+    Ok(report)
+}
+
+/// What was lost or damaged, and a stream that has no samples at all.
+fn faults(report: &HeardReport) -> Vec<String> {
+    let mut faults = Vec::new();
+    for (i, link) in report.links.iter().enumerate() {
+        let counts = [("lost_seq", link.lost_seq.unwrap_or(0)), ("crc_errors", link.crc_errors)];
+        let some = counts.into_iter().filter(|(_, count)| *count > 0);
+        faults.extend(some.map(|(name, count)| format!("links.{i}.{name} = {count} > 0")));
+    }
+    if report.sensors.is_empty() {
+        faults.push("no packet carried a sample of gyro, accel or mag".into());
+    }
+    faults
+}
+
+/// How the intervals between arrivals are spread, by sensor.
+fn intervals(from: &Destination, meter: &Meter, sensors: &[HeardSensor]) -> String {
+    let distribution = |stream: &listen::Stream| Distribution {
+        name: stream.name().to_string(),
+        values: stream.intervals_us().collect(),
+    };
+    let named = |name: &str| sensors.iter().find(|sensor| sensor.name == name);
+    let median = |(of, stream): (usize, &listen::Stream)| {
+        let x = named(stream.name())?.interval_us?.p50;
+        Some(Marker { x, label: format!("{} {} µs", stream.name(), number(x)), of: Some(of) })
+    };
+    histogram(&Histogram {
+        title: "Intervals between arrivals".into(),
+        subtitle: from.to_string(),
+        x_label: "interval (µs)".into(),
+        log_x: true,
+        log_y: true,
+        distributions: meter.streams().iter().map(distribution).collect(),
+        markers: meter.streams().iter().enumerate().filter_map(median).collect(),
+        ..Histogram::default()
+    })
+}

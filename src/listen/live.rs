@@ -1,0 +1,215 @@
+//! From a link into the meter, until the sender leaves, the time is over or the user ends it.
+
+use super::{Event, Heard, Job, ListenError, Meter, Progress};
+use crate::clock::{Clock, WallClock};
+use crate::link::{Address, Link, LinkError, Receiver, Sender};
+use crate::wire::{Protocol, samples};
+use bytes::BytesMut;
+use std::time::Duration;
+use tokio::signal::unix::{Signal, SignalKind, signal};
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
+
+/// Between two reports of progress.
+const PROGRESS: Duration = Duration::from_millis(200);
+/// Between two greetings, and over what rates are shown.
+const SECOND: Duration = Duration::from_secs(1);
+
+/// Listens to a link and tells `on` what happens meanwhile.
+///
+/// # Errors
+/// A link that cannot be opened, no byte or no packet in time, a system that has no signals.
+pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenError> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime =
+        runtime.map_err(|source| ListenError::System { doing: "start the listening loop", source })?;
+    runtime.block_on(async {
+        let mut signals = Signals::new()?;
+        let mut link = Link::listen(&job.address).await?;
+        link.notices().iter().for_each(|notice| on(Event::Notice(notice.clone())));
+        let name = link.name().to_string();
+        on(Event::Ready(&format!("{}@{name}", job.protocol.name())));
+        let live = link.is_live();
+        if !live {
+            on(Event::Notice(
+                "a recording: its bytes have no times of arrival, so rates are by sample times".into(),
+            ));
+        }
+        let Some(receiver) = link.receiver() else {
+            return Err(ListenError::Mute {
+                link: name,
+                right: "listen to a port, a pty, a socket or a file",
+            });
+        };
+        // A sender that waits for a word on UDP gets one; every other link is left in silence.
+        let greeted = matches!(job.address, Address::UdpOut(_)).then(|| link.sender());
+        let meter = Meter::new(job.protocol);
+        let clock = WallClock::start();
+        let ear = Ear { job, name, live, link, receiver, greeted, meter, clock };
+        ear.hear(&mut signals, on).await
+    })
+}
+
+struct Signals(Signal, Signal);
+
+impl Signals {
+    fn new() -> Result<Signals, ListenError> {
+        let on =
+            |kind| signal(kind).map_err(|source| ListenError::System { doing: "listen for Ctrl-C", source });
+        Ok(Signals(on(SignalKind::interrupt())?, on(SignalKind::terminate())?))
+    }
+
+    async fn recv(&mut self) {
+        tokio::select! { _ = self.0.recv() => {}, _ = self.1.recv() => {} }
+    }
+}
+
+struct Ear<'a> {
+    job: &'a Job,
+    name: String,
+    live: bool,
+    link: Link,
+    receiver: Receiver,
+    greeted: Option<Sender>,
+    meter: Meter,
+    clock: WallClock,
+}
+
+impl Ear<'_> {
+    async fn hear(
+        mut self,
+        signals: &mut Signals,
+        on: &mut dyn FnMut(Event<'_>),
+    ) -> Result<Heard, ListenError> {
+        let start = Instant::now();
+        let (mut first, mut interrupted) = (None, false);
+        let mut ticks = interval(PROGRESS);
+        ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut greetings = interval(SECOND);
+        let (mut greeting, mut recent, mut bytes) = (0u8, Recent::default(), 0);
+        let mut buffer = BytesMut::with_capacity(65_536);
+        loop {
+            let end = first.zip(self.job.span).map(|(first, span): (Instant, Duration)| first + span);
+            tokio::select! {
+                count = self.receiver.recv(&mut buffer) => {
+                    let now = self.clock.now();
+                    if count.map_err(|source| self.broke(source))? == 0 {
+                        break;
+                    }
+                    first.get_or_insert_with(Instant::now);
+                    self.meter.arrived(&buffer, self.live.then_some(now));
+                    buffer.clear();
+                }
+                _ = ticks.tick() => {
+                    self.give_up(start.elapsed())?;
+                    if self.is_over(&mut bytes) {
+                        break;
+                    }
+                    recent.look(&self.meter);
+                    let elapsed = first.map_or(Duration::ZERO, |first: Instant| first.elapsed());
+                    on(Event::Progress(Progress { elapsed, meter: &self.meter, rates: &recent.rates }));
+                }
+                _ = greetings.tick(), if self.greeted.is_some() => {
+                    self.greet(greeting);
+                    greeting = greeting.wrapping_add(1);
+                }
+                () = signals.recv() => {
+                    interrupted = true;
+                    break;
+                }
+                () = until(end) => break,
+            }
+        }
+        self.meter.finish();
+        if self.meter.counts().packets == 0 && !interrupted {
+            return Err(self.nothing(None));
+        }
+        Ok(Heard { name: self.name, interrupted, meter: self.meter })
+    }
+
+    /// Whether the writer of a pty of ours has left, which its end that we hold does not show, and all is read.
+    fn is_over(&self, before: &mut u64) -> bool {
+        let bytes = self.meter.counts().bytes;
+        let idle = std::mem::replace(before, bytes) == bytes && bytes > 0;
+        idle && self.link.peer_has_left()
+    }
+
+    fn greet(&mut self, seq: u8) {
+        if let Some(sender) = &mut self.greeted {
+            // One that does not arrive is followed by the next.
+            let _ = sender.send(&samples::greeting(self.job.protocol, seq));
+        }
+    }
+
+    /// Ends a wait that has been long enough without a packet.
+    fn give_up(&self, waited: Duration) -> Result<(), ListenError> {
+        let waits = self.job.wait.is_zero() || waited < self.job.wait || self.meter.counts().packets > 0;
+        if waits { Ok(()) } else { Err(self.nothing(Some(self.job.wait))) }
+    }
+
+    /// Why there is no packet.
+    fn nothing(&self, waited: Option<Duration>) -> ListenError {
+        let (link, bytes, protocol) = (self.name.clone(), self.meter.counts().bytes, self.job.protocol);
+        match bytes {
+            0 => ListenError::Silence { link, waited, check: check(&self.job.address) },
+            _ => ListenError::Noise { link, bytes, protocol, reads_as: self.reads_as(protocol) },
+        }
+    }
+
+    fn reads_as(&self, protocol: Protocol) -> Option<Protocol> {
+        self.meter.reads_as().filter(|other| *other != protocol)
+    }
+
+    fn broke(&self, source: std::io::Error) -> ListenError {
+        LinkError::Io { link: self.name.clone(), doing: "read".into(), source }.into()
+    }
+}
+
+async fn until(end: Option<Instant>) {
+    match end {
+        Some(end) => sleep_until(end).await,
+        None => std::future::pending().await,
+    }
+}
+
+/// What to look at where a link stays silent.
+fn check(address: &Address) -> &'static str {
+    match address {
+        Address::Serial { .. } => {
+            "is the sender on, its TX wired to our RX with a common ground, and the baud rate its own?"
+        }
+        Address::Pty { .. } => "does the sender write into the path above?",
+        Address::TcpIn(_) => "does the sender connect to this address and port?",
+        Address::TcpOut(_) => {
+            "the sender took the connection and said nothing; does it wait for a word first?"
+        }
+        Address::UdpIn(_) => {
+            "does the sender send to this port, and from this machine (else listen on udpin:0.0.0.0:PORT)?"
+        }
+        Address::UdpOut(_) => {
+            "the sender was greeted once a second; is the port right, or does it send to udpin:PORT?"
+        }
+        Address::File { .. } | Address::Stdout => "it is empty",
+    }
+}
+
+/// Samples a second of each stream over the newest whole second.
+#[derive(Default)]
+struct Recent {
+    since: Option<Instant>,
+    counts: Vec<u64>,
+    rates: Vec<f64>,
+}
+
+impl Recent {
+    fn look(&mut self, meter: &Meter) {
+        let now = Instant::now();
+        let seconds = self.since.map_or(f64::INFINITY, |since| (now - since).as_secs_f64());
+        if seconds < SECOND.as_secs_f64() {
+            return;
+        }
+        let counts: Vec<u64> = meter.streams().iter().map(|stream| stream.count()).collect();
+        let before = self.counts.iter().copied().chain(std::iter::repeat(0));
+        self.rates = counts.iter().zip(before).map(|(now, before)| (now - before) as f64 / seconds).collect();
+        (self.since, self.counts) = (Some(now), counts);
+    }
+}

@@ -1,0 +1,142 @@
+//! Bytes and when they arrived in; rates, intervals, losses and damage out. No clock, no I/O.
+
+use super::stream::Stream;
+use crate::report::{HeardLink, HeardSensor};
+use crate::sensor::SensorKind;
+use crate::wire::Protocol;
+use crate::wire::samples::{Counts, Sample, Samples};
+use std::fmt;
+
+/// As many sensors as are told apart on one link.
+const STREAMS: usize = 32;
+
+/// Bytes kept until the first packet, to tell as what else they read.
+const KEPT: usize = 16_384;
+
+/// Packets that bytes must make to be taken for a protocol's.
+const ENOUGH: u64 = 3;
+
+/// Counts and times one stream of bytes.
+pub struct Meter {
+    samples: Samples,
+    streams: Vec<Stream>,
+    reads: u64,
+    first: Option<i64>,
+    last: Option<i64>,
+    /// Bytes of the first read: they came before the first interval began.
+    before: u64,
+    kept: Vec<u8>,
+}
+
+impl fmt::Debug for Meter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Meter").field("counts", self.counts()).finish_non_exhaustive()
+    }
+}
+
+impl Meter {
+    /// Of a stream of which only the protocol is known.
+    pub fn new(protocol: Protocol) -> Meter {
+        Meter {
+            samples: Samples::new(protocol),
+            streams: Vec::new(),
+            reads: 0,
+            first: None,
+            last: None,
+            before: 0,
+            kept: Vec::new(),
+        }
+    }
+
+    /// Takes in what one read brought at `now` (ns, by a clock that never goes back); `now` is `None` for what was
+    /// recorded before, whose time of arrival means nothing.
+    pub fn arrived(&mut self, bytes: &[u8], now: Option<i64>) {
+        if self.reads == 0 {
+            self.before = bytes.len() as u64;
+        }
+        self.reads += 1;
+        self.first = self.first.or(now);
+        self.last = now.or(self.last);
+        let Meter { samples, streams, reads, kept, .. } = self;
+        samples.feed(bytes, |sample| take(streams, sample, now, *reads));
+        match samples.counts().packets {
+            0 => kept.extend(bytes.iter().take(KEPT - kept.len())),
+            _ => *kept = Vec::new(),
+        }
+    }
+
+    /// Takes in what is held of a last packet: nothing more comes.
+    pub fn finish(&mut self) {
+        let Meter { samples, streams, reads, last, .. } = self;
+        samples.finish(|sample| take(streams, sample, *last, *reads));
+    }
+
+    /// What came so far.
+    pub fn counts(&self) -> &Counts {
+        self.samples.counts()
+    }
+
+    /// Each sensor heard, in the order in which they began.
+    pub fn streams(&self) -> &[Stream] {
+        &self.streams
+    }
+
+    /// From the first to the last read, s; `None` for a recording.
+    pub fn duration_s(&self) -> Option<f64> {
+        Some(self.last?.saturating_sub(self.first?) as f64 * 1e-9)
+    }
+
+    /// The protocol that bytes read as which make no packet of the one asked for.
+    pub fn reads_as(&self) -> Option<Protocol> {
+        let makes_packets = |protocol: &Protocol| {
+            let mut samples = Samples::new(*protocol);
+            samples.feed(&self.kept, |_| {});
+            let counts = samples.counts();
+            counts.packets >= ENOUGH && counts.packets > counts.damaged
+        };
+        Protocol::ALL.into_iter().find(makes_packets)
+    }
+
+    /// Each sensor's report, in the order of gyro, accel, mag.
+    pub fn sensors(&self) -> Vec<HeardSensor> {
+        let of = |kind: SensorKind| self.streams.iter().filter(move |stream| stream.kind() == kind);
+        SensorKind::ALL.into_iter().flat_map(of).map(Stream::report).collect()
+    }
+
+    /// The link's report, `to` as asked for and `name` as opened; `baud` where it has a rate that counts.
+    pub fn link(&self, to: String, name: String, baud: Option<u32>) -> HeardLink {
+        let counts = self.counts().clone();
+        // The first read brought what had gathered before: the rate is of what came after it.
+        let after = counts.bytes - self.before;
+        let bytes_per_s = self.duration_s().filter(|span| *span > 0.0).map(|span| after as f64 / span);
+        HeardLink {
+            to,
+            name,
+            packets: counts.packets,
+            bytes: counts.bytes,
+            bytes_per_s,
+            // 8N1: ten bits a byte.
+            utilisation: baud.and_then(|baud| Some(10.0 * bytes_per_s? / f64::from(baud))),
+            crc_errors: counts.damaged,
+            lost_seq: counts.numbered.then_some(counts.lost),
+            joined_midway: counts.joined_midway,
+            foreign: counts.foreign,
+        }
+    }
+}
+
+/// Gives a sample to its stream; a new one beyond [`STREAMS`] is not told apart from the last.
+fn take(streams: &mut Vec<Stream>, sample: Sample, now: Option<i64>, read: u64) {
+    let place = streams.iter().position(|stream| stream.is_of(&sample)).unwrap_or_else(|| {
+        if streams.len() < STREAMS {
+            let before = streams.iter().filter(|stream| stream.kind() == sample.kind).count();
+            let name = match before {
+                0 => sample.kind.name().to_string(),
+                n => format!("{}-{}", sample.kind, n + 1),
+            };
+            streams.push(Stream::new(name, &sample));
+        }
+        streams.len() - 1
+    });
+    streams[place].take(sample.t, now, read);
+}

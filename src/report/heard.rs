@@ -1,0 +1,105 @@
+//! What was heard on a link: the report of `listen`, with the names of a run's where they mean the same.
+
+use super::{Host, Interval, Late};
+use hdrhistogram::Histogram;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The report of somebody's stream, one JSON object.
+#[derive(Clone, Debug, Serialize)]
+pub struct HeardReport {
+    /// The program's version.
+    pub version: String,
+    /// Whether nothing was lost or damaged and every limit held.
+    pub ok: bool,
+    /// What did not hold: `links.0.lost_seq = 3 > 0`.
+    pub failed: Vec<String>,
+    /// From the first bytes to the last, s; absent where they were recorded before.
+    pub duration_s: Option<f64>,
+    /// What it ran on.
+    pub host: Host,
+    /// Each sensor heard, in the order of gyro, accel, mag.
+    pub sensors: Vec<HeardSensor>,
+    /// The link that was listened to.
+    pub links: Vec<HeardLink>,
+}
+
+/// One sensor as the receiver sees it.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct HeardSensor {
+    /// `gyro`, `accel`, `mag`; others of the same kind on the link are `gyro-2`, …
+    pub name: String,
+    /// Which packets bring it.
+    pub source: String,
+    /// Samples received.
+    pub received: u64,
+    /// By the sender's own sample times: (n − 1)/(t_last − t_first), Hz.
+    pub rate_hz: Option<f64>,
+    /// By their arrival: (n − 1)/(t_last − t_first), Hz.
+    pub received_hz: Option<f64>,
+    /// Samples that are missing by their times, a gap counting as many as the median interval fits into it.
+    pub missing: Option<u64>,
+    /// How often a sample's time was not after that of the one before.
+    pub steps_back: u64,
+    /// The share of samples that arrived in the same read as the one before.
+    pub burst_share: Option<f64>,
+    /// Between two arrivals, µs.
+    pub interval_us: Option<Interval>,
+    /// Between two sample times, µs.
+    pub sample_interval_us: Option<Interval>,
+    /// How far the interval between two arrivals is from that between the two sample times, either way, µs: the
+    /// error of dt for a receiver that takes the time of arrival for the time of the sample.
+    pub jitter_us: Option<Late>,
+}
+
+/// The link as the receiver sees it.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct HeardLink {
+    /// `PROTOCOL@LINK` as asked for.
+    pub to: String,
+    /// What was opened.
+    pub name: String,
+    /// Whole packets.
+    pub packets: u64,
+    /// Bytes, those of no packet included.
+    pub bytes: u64,
+    /// Bytes a second from the first to the last arrival.
+    pub bytes_per_s: Option<f64>,
+    /// The same against what the baud rate carries (8N1), where there is one.
+    pub utilisation: Option<f64>,
+    /// Stretches of bytes that are no packet or fail its checksum.
+    pub crc_errors: u64,
+    /// Packets missing by their sequence numbers, modulo 256, damaged ones included; absent in protocols without.
+    pub lost_seq: Option<u64>,
+    /// 1 if the first bytes were the rest of a packet, which is no damage.
+    pub joined_midway: u64,
+    /// Packets without a sample, by name.
+    pub foreign: BTreeMap<String, u64>,
+}
+
+fn us(ns: u64) -> f64 {
+    ns as f64 / 1000.0
+}
+
+impl Late {
+    /// Of times in ns; `None` where there are none.
+    pub fn of_ns(histogram: &Histogram<u64>) -> Option<Late> {
+        let at = |quantile| us(histogram.value_at_quantile(quantile));
+        (!histogram.is_empty()).then(|| Late {
+            min: us(histogram.min()),
+            p50: at(0.5),
+            p99: at(0.99),
+            p99_9: at(0.999),
+            max: us(histogram.max()),
+        })
+    }
+}
+
+impl Interval {
+    /// Of times in ns; `None` where there are none.
+    pub fn of_ns(histogram: &Histogram<u64>) -> Option<Interval> {
+        let std = histogram.stdev() / 1000.0;
+        let of = |Late { min, p50, p99, p99_9, max }| Interval { min, std, p50, p99, p99_9, max };
+        Late::of_ns(histogram).map(of)
+    }
+}
