@@ -42,12 +42,12 @@ resident() { awk '/VmRSS/ { print $2 }' "/proc/$1/status"; }
 long() {
     span=600s
     measure long 0.65 --set "gyro.rate='8 kHz'" &
-    local pid=$! child first last
+    local pid=$! child first last seen
     sleep 30
-    child=$(pgrep -P "$pid" -x ratetable)
+    child=$(pgrep -P "$pid")
     first=$(resident "$child")
-    while last_seen=$(resident "$child" 2>/dev/null) && [ -n "$last_seen" ]; do
-        last=$last_seen
+    while seen=$(resident "$child" 2>/dev/null) && [ -n "$seen" ]; do
+        last=$seen
         sleep 5
     done
     local verdict=0

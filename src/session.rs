@@ -11,6 +11,7 @@
 mod answers;
 mod command;
 mod control;
+mod granted;
 mod interrupt;
 mod pacer;
 mod producer;

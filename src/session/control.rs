@@ -1,6 +1,7 @@
 //! The control side of a run: opens links, waits for peers, starts the threads, listens, ends cleanly.
 
 use super::answers::{self, Ear, Heard};
+use super::granted::Granted;
 use super::pacer::Pacer;
 use super::producer::{self, Made};
 use super::tally::{self, LinkTally};
@@ -8,7 +9,6 @@ use super::watch::Watching;
 use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command};
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
-use crate::os;
 use crate::report::{LinkReport, PacingReport};
 use crate::time::SimTime;
 use crate::wire;
@@ -29,8 +29,6 @@ const RING: usize = 8192;
 const LEAD: i64 = 5_000_000;
 /// Between two reports of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
-/// Real-time priority of the pacing thread: above ordinary work, below the kernel's own threads.
-const PRIORITY: i32 = 50;
 /// For answers that are still on their way when the last packet is out.
 const LAST_ANSWERS: Duration = Duration::from_millis(200);
 
@@ -248,7 +246,7 @@ impl Run {
         let (tell, notices) = oneshot::channel();
         let (over, done) = oneshot::channel();
         let body = move || {
-            let granted = if paced { privileges(cpu) } else { Granted::default() };
+            let granted = if paced { Granted::ask(cpu) } else { Granted::default() };
             let _ = tell.send(granted.refused.clone());
             pacer.run(pacer.clock.now() + LEAD, &shared);
             let _ = over.send(());
@@ -464,47 +462,6 @@ type Paced = (
     oneshot::Receiver<Option<String>>,
     oneshot::Receiver<()>,
 );
-
-/// What the system granted the pacing thread.
-#[derive(Clone, Debug, Default)]
-struct Granted {
-    priority: bool,
-    memory: bool,
-    /// The processor it is bound to.
-    cpu: Option<usize>,
-    /// One notice about what it did not grant, and what would.
-    refused: Option<String>,
-}
-
-/// Asks for real-time priority, punctual sleeps and the processor `cpu` for the calling thread, and locked memory for
-/// the process.
-fn privileges(cpu: Option<usize>) -> Granted {
-    let priority = os::set_realtime_priority(PRIORITY);
-    let memory = os::lock_memory();
-    // Without real-time priority the kernel may wake a thread 50 µs later than asked, to wake several together.
-    os::set_punctual_sleep();
-    let bound = cpu.map_or(Ok(()), |cpu| os::set_affinity(&[cpu]));
-    let mut notices = Vec::new();
-    let refused: Vec<_> = [("real-time priority", &priority), ("locked memory", &memory)]
-        .into_iter()
-        .filter_map(|(what, granted)| granted.as_ref().err().map(|error| format!("{what} ({error})")))
-        .collect();
-    if !refused.is_empty() {
-        notices.push(format!(
-            "not granted: {}; packets may be later on a busy machine. To grant it: `sudo setcap cap_sys_nice,cap_ipc_lock+ep` on this program, or `rtprio 50` and `memlock unlimited` in /etc/security/limits.conf",
-            refused.join(", ")
-        ));
-    }
-    if let (Some(cpu), Err(error)) = (cpu, &bound) {
-        notices.push(format!("the pacing thread could not be bound to processor {cpu}: {error}"));
-    }
-    Granted {
-        priority: priority.is_ok(),
-        memory: memory.is_ok(),
-        cpu: cpu.filter(|_| bound.is_ok()),
-        refused: (!notices.is_empty()).then(|| notices.join("; ")),
-    }
-}
 
 #[cfg(test)]
 mod tests {
