@@ -94,6 +94,9 @@ fn run(plan: &Arc<Plan>, to: &str) -> u64 {
         command: Vec::new(),
         keep_stdout: false,
         estimator: String::new(),
+        cpu: None,
+        watch: None,
+        tap: None,
     };
     let mut reader = None;
     let outcome = session::run(job, &mut |event| {

@@ -11,6 +11,7 @@ mod progress;
 mod run;
 mod study;
 mod summary;
+mod timing;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -28,6 +29,8 @@ struct Arguments {
 enum Command {
     /// Stream a scene in real time; without a link, demonstrate it on a pty pair with an AHRS on the other end
     Run(run::Arguments),
+    /// Measure how late and how even a stream is, at both ends and against a bare timer
+    Timing(timing::Arguments),
     /// Make a dataset: readings, exact truth, manifest
     Generate(generate::Arguments),
     /// Read a scene and show the plan: sensors, noise, bytes a second, warnings
@@ -74,6 +77,7 @@ impl<E: std::error::Error> From<E> for Refusal {
 pub fn main() -> ExitCode {
     let verdict = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Timing(arguments) => timing::timing(&arguments),
         Command::Generate(arguments) => generate::generate(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Listen(arguments) => listen::listen(&arguments),

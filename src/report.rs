@@ -5,11 +5,13 @@ mod heard;
 mod limit;
 mod text;
 mod times;
+mod timing;
 
 pub use heard::{HeardLink, HeardReport, HeardSensor};
 pub use limit::{Limit, LimitError};
 pub use text::{number, table};
 pub use times::Times;
+pub use timing::{Baseline, SensorTiming, TimingReport};
 
 use crate::score::Score;
 use serde::Serialize;
@@ -57,6 +59,21 @@ pub struct Host {
     pub memory_locked: bool,
     /// Which clock paced it.
     pub clock: &'static str,
+    /// How the pacing thread waited; absent where nothing is paced.
+    #[serde(flatten)]
+    pub pacing: Option<PacingReport>,
+}
+
+/// How the pacing thread waited.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct PacingReport {
+    /// Its margin for spinning at the end, as learnt from its own wake-ups, µs.
+    pub spin_us: f64,
+    /// Its share of a core while it streamed, writes included.
+    pub pacing_cpu: f64,
+    /// The processor it was bound to, where it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pinned_cpu: Option<usize>,
 }
 
 /// One sensor.
@@ -85,6 +102,9 @@ pub struct SensorReport {
     pub interval_us: Option<Interval>,
     /// What the write call itself took, µs.
     pub write_us: Option<Spread>,
+    /// What `timing` adds.
+    #[serde(flatten)]
+    pub timing: Option<SensorTiming>,
 }
 
 /// Lateness, µs.

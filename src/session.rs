@@ -11,6 +11,7 @@
 mod answers;
 mod command;
 mod control;
+mod granted;
 mod interrupt;
 mod links;
 mod overload;
@@ -19,14 +20,16 @@ mod overload_tests;
 mod pacer;
 mod producer;
 mod tally;
+mod watch;
 
 pub use control::run;
 pub use interrupt::on_interrupt;
 pub use pacer::Speed;
+pub use watch::{Record, Watch, Watched};
 
 use crate::geometry::Attitude;
 use crate::link::LinkError;
-use crate::report::{LinkReport, SensorReport};
+use crate::report::{LinkReport, PacingReport, SensorReport};
 use crate::scene::{Output, Plan};
 use crate::score::Score;
 use crate::time::SimTime;
@@ -54,6 +57,24 @@ pub struct Job {
     pub keep_stdout: bool,
     /// What the estimator on the other side is called in the score.
     pub estimator: String,
+    /// The processor that the pacing thread is to keep to.
+    pub cpu: Option<usize>,
+    /// A comparison with a bare timer, on the pacing thread.
+    pub watch: Option<Watch>,
+    /// Who takes in what comes back on the first link, in place of the score: a loopback plug returns the packets.
+    pub tap: Option<Tap>,
+}
+
+/// Called with bytes as they arrive.
+pub type OnBytes = dyn FnMut(&[u8]);
+
+/// Takes in what a link receives.
+pub struct Tap(pub Box<OnBytes>);
+
+impl std::fmt::Debug for Tap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Tap")
+    }
 }
 
 /// What happens meanwhile.
@@ -95,6 +116,10 @@ pub struct Outcome {
     pub realtime: bool,
     /// Whether the process was locked in memory.
     pub memory_locked: bool,
+    /// How the pacing thread waited; `None` where nothing was paced.
+    pub pacing: Option<PacingReport>,
+    /// The comparison, where one was asked for.
+    pub watched: Option<Watched>,
     /// Each sensor's counts, rates and lateness.
     pub sensors: Vec<SensorReport>,
     /// Each link's counts.
@@ -175,3 +200,5 @@ impl Shared {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod watch_tests;

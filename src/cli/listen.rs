@@ -108,7 +108,7 @@ fn empty(sensors: Vec<HeardSensor>, links: Vec<HeardLink>) -> HeardReport {
         ok: true,
         failed: Vec::new(),
         duration_s: None,
-        host: super::run::host(false, false),
+        host: super::run::host(false, false, None),
         sensors,
         links,
     }

@@ -39,6 +39,16 @@ pub fn speed(text: &str) -> Result<Speed, String> {
     }
 }
 
+/// `--cpu`: a processor that this process may use.
+pub fn processor(text: &str) -> Result<usize, String> {
+    let allowed = crate::os::affinity().map_err(|error| error.to_string())?;
+    let found = text.parse().ok().filter(|cpu| allowed.contains(cpu));
+    found.ok_or_else(|| {
+        let names: Vec<_> = allowed.iter().map(usize::to_string).collect();
+        format!("this process may use the processors {}", names.join(", "))
+    })
+}
+
 /// `--to`: where packets go.
 pub fn output(text: &str) -> Result<Output, String> {
     Ok(Output::to(text.parse::<Destination>()?))

@@ -5,7 +5,9 @@ use super::demo::{Firmware, Received};
 use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary};
 use crate::link::Address;
-use crate::report::{Gaps, Host, Interval, Late, Limit, LinkReport, Report, SensorReport, Spread};
+use crate::report::{
+    Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
+};
 use crate::scene::{Destination, Output, Overload, Plan};
 use crate::score::Score;
 use crate::session::{self, Event, Job, Outcome, Speed};
@@ -35,6 +37,9 @@ pub struct Arguments {
     /// How long to wait for somebody on the other side; 0 starts at once
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = options::wait)]
     wait: Duration,
+    /// Keep the pacing thread to this processor
+    #[arg(long, value_name = "N", value_parser = options::processor)]
+    cpu: Option<usize>,
     /// Override one key of the scene, such as gyro.rate='8 kHz'
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -81,6 +86,9 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
         command: arguments.command.clone(),
         keep_stdout: arguments.json,
         estimator: if demonstration { "vqf".into() } else { "firmware".into() },
+        cpu: arguments.cpu,
+        watch: None,
+        tap: None,
     };
     let (outcome, received) = play(job, &plan, demonstration)?;
     fill(&mut report, &outcome, arguments.speed);
@@ -113,6 +121,9 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
     }
     if arguments.span == Some(SimTime::FOREVER) && arguments.speed == Speed::Max {
         return Err(Refusal("--for forever at --speed max never ends and never waits: give a time".into()));
+    }
+    if arguments.cpu.is_some() && arguments.speed == Speed::Max {
+        return Err(Refusal("--cpu keeps the pacing thread to a processor, and --speed max paces nothing: leave out one of the two".into()));
     }
     plan.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
     for output in outputs {
@@ -178,7 +189,7 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
 }
 
 /// A report with every field that a run can have: limits are checked against it before anything is opened.
-fn shape(plan: &Plan, outputs: &[Output]) -> Report {
+pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
     let sensor = |sensor: &crate::sensor::SensorPlan| SensorReport {
         name: sensor.kind.name().into(),
         rate_hz: sensor.rate.as_hz(),
@@ -191,6 +202,7 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         late_us: Some(Late::default()),
         interval_us: Some(Interval::default()),
         write_us: Some(Spread::default()),
+        timing: None,
     };
     let link = |output: &Output| LinkReport {
         to: output.to.to_string(),
@@ -228,36 +240,36 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         duration_s: 0.0,
         stretched_s: 0.0,
         speed: Value::Null,
-        host: host(false, false),
+        host: host(false, false, Some(PacingReport::default())),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),
         attitude: Some(score),
     }
 }
 
-/// What this runs on, and what the pacing thread was granted.
-pub fn host(realtime: bool, memory_locked: bool) -> Host {
+/// What this runs on, what the pacing thread was granted, and how it waited.
+pub fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -> Host {
     let name = rustix::system::uname();
     let cpus = std::thread::available_parallelism().map_or(1, |cpus| cpus.get());
     let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());
-    Host { kernel, cpus, realtime, memory_locked, clock: "CLOCK_MONOTONIC" }
+    Host { kernel, cpus, realtime, memory_locked, clock: "CLOCK_MONOTONIC", pacing }
 }
 
-fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
+pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.duration_s = outcome.played.seconds();
     report.stretched_s = outcome.stretched_s;
     report.speed = match speed {
         Speed::Times(times) => times.into(),
         Speed::Max => "max".into(),
     };
-    report.host = host(outcome.realtime, outcome.memory_locked);
+    report.host = host(outcome.realtime, outcome.memory_locked, outcome.pacing);
     report.sensors = outcome.sensors.clone();
     report.links = outcome.links.clone();
     report.attitude = outcome.score.clone();
 }
 
 /// Losses, broken limits, and a command that failed.
-fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
+pub(super) fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
     let lost = report.sensors.iter().filter(|sensor| sensor.dropped > 0);
     let mut failed: Vec<_> =
         lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();

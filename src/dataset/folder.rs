@@ -26,7 +26,11 @@ pub struct Folder {
 }
 
 impl Folder {
-    pub(super) fn open(target: &Path, force: bool) -> Result<Folder, DatasetError> {
+    /// Begins the folder `target`.
+    ///
+    /// # Errors
+    /// It holds something and `force` is off, it is no folder, or the system refuses.
+    pub fn open(target: &Path, force: bool) -> Result<Folder, DatasetError> {
         let inside = may_write(target, force)?;
         let workshop = workshop(target, inside);
         fs::create_dir_all(&workshop).map_err(DatasetError::io("create", target))?;
@@ -44,7 +48,10 @@ impl Folder {
     }
 
     /// A new file with these contents.
-    pub(super) fn put(&self, name: &str, contents: &[u8]) -> Result<(), DatasetError> {
+    ///
+    /// # Errors
+    /// The system's reason and the path.
+    pub fn put(&self, name: &str, contents: &[u8]) -> Result<(), DatasetError> {
         let mut sink = self.file(name)?;
         sink.put(contents)?;
         sink.close()
@@ -56,7 +63,10 @@ impl Folder {
     }
 
     /// Shows the folder under its name.
-    pub(super) fn commit(self) -> Result<(), DatasetError> {
+    ///
+    /// # Errors
+    /// The system's reason and the path.
+    pub fn commit(self) -> Result<(), DatasetError> {
         let at_target = DatasetError::io("write", &self.target);
         if !self.inside {
             return fs::rename(&self.workshop, &self.target).map_err(at_target);

@@ -12,7 +12,7 @@
 
 use super::baud::BITS_PER_BYTE;
 use super::sender::{Carry, Out, Sender};
-use crate::clock::{Clock, Pacing, WallClock};
+use crate::clock::{Clock, WallClock};
 use crate::os;
 use rtrb::{Consumer, Producer, RingBuffer};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -72,7 +72,7 @@ impl Uart {
     pub(super) fn start(baud: u32, master: Arc<OwnedFd>) -> io::Result<(Uart, Sender)> {
         let (producer, consumer) = RingBuffer::new(BUFFER);
         // It sleeps and never spins: a wake-up that is late delays a FIFO's worth of bytes and shifts nothing.
-        let clock = WallClock::start(Pacing { spin_ns: 0 });
+        let clock = WallClock::start();
         let line = Arc::new(Line {
             baud,
             taken: AtomicU64::new(0),
@@ -373,7 +373,7 @@ mod tests {
         let mut far = std::fs::File::open(link.name()).unwrap();
         let sent: Vec<u8> = (0..20_000_u32).map(|i| (i ^ (i >> 8)) as u8).collect();
         let (mut sender, packets) = (link.sender(), sent.clone());
-        let clock = WallClock::start(Pacing::default());
+        let clock = WallClock::start();
         let writing = thread::spawn(move || {
             let stop = AtomicBool::new(false);
             for packet in packets.chunks(77) {

@@ -1,7 +1,7 @@
 //! From a link into the meter, until the sender leaves, the time is over or the user ends it.
 
 use super::{Event, Heard, Job, ListenError, Meter, Progress};
-use crate::clock::{Clock, Pacing, WallClock};
+use crate::clock::{Clock, WallClock};
 use crate::link::{Address, Link, LinkError, Receiver, Sender};
 use crate::wire::{Protocol, samples};
 use bytes::BytesMut;
@@ -43,7 +43,7 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
         // A sender that waits for a word on UDP gets one; every other link is left in silence.
         let greeted = matches!(job.address, Address::UdpOut(_)).then(|| link.sender());
         let meter = Meter::new(job.protocol);
-        let clock = WallClock::start(Pacing::default());
+        let clock = WallClock::start();
         let ear = Ear { job, name, live, link, receiver, greeted, meter, clock };
         ear.hear(&mut signals, on).await
     })

@@ -1,6 +1,6 @@
 //! What comes back on the links: decoded, set against the truth, kept.
 
-use super::{Shared, Speed};
+use super::{Shared, Speed, Tap};
 use crate::clock::{Clock, WallClock};
 use crate::geometry::Attitude;
 use crate::link::Receiver;
@@ -22,6 +22,15 @@ pub(super) struct Heard {
     pub newest_deg: Option<f64>,
     /// Bytes that were no answer, by link.
     pub damaged: Vec<u64>,
+}
+
+/// Hands on what one link receives until the other side leaves.
+pub(super) async fn tapped(mut receiver: Receiver, mut tap: Tap) {
+    let mut buffer = BytesMut::with_capacity(4096);
+    while matches!(receiver.recv(&mut buffer).await, Ok(1..)) {
+        tap.0(&buffer);
+        buffer.clear();
+    }
 }
 
 /// What a listening task knows.

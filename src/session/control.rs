@@ -1,15 +1,16 @@
 //! The control side of a run: opens links, waits for peers, starts the threads, listens, ends cleanly.
 
-use super::answers::{Ear, Heard};
+use super::answers::{self, Ear, Heard};
+use super::granted::Granted;
 use super::links::{Account, LOOK, Lookout};
 use super::pacer::{Left, Pacer};
 use super::producer::{self, Made};
 use super::tally::{self, LinkTally};
+use super::watch::Watching;
 use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command};
-use crate::clock::{Clock, Pacing, WallClock};
+use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
-use crate::os;
-use crate::report::LinkReport;
+use crate::report::{LinkReport, PacingReport};
 use crate::time::SimTime;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -28,8 +29,6 @@ const RING: usize = 8192;
 const LEAD: i64 = 5_000_000;
 /// Between two reports of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
-/// Real-time priority of the pacing thread: above ordinary work, below the kernel's own threads.
-const PRIORITY: i32 = 50;
 /// For answers that are still on their way when the last packet is out.
 const LAST_ANSWERS: Duration = Duration::from_millis(200);
 
@@ -59,6 +58,8 @@ struct Run {
     interrupted: bool,
     /// The command's exit code, once it has ended by itself.
     ended: Option<i32>,
+    /// Whether what comes back on the first link goes to the job's tap.
+    tapped: bool,
     /// Tasks that read what comes back; each holds its link open.
     ears: Vec<tokio::task::JoinHandle<()>>,
     absence: Duration,
@@ -124,14 +125,16 @@ impl Run {
         let shared = Shared::default();
         shared.start_ns.store(-1, Ordering::Relaxed);
         let lookout = Lookout::new(job.outputs.len());
+        let clock = job.watch.as_ref().map_or_else(WallClock::start, |watch| watch.clock);
         Run {
             job,
             lookout,
             shared: Arc::new(shared),
-            clock: WallClock::start(Pacing::default()),
+            clock,
             heard: Rc::new(RefCell::new(heard)),
             interrupted: false,
             ended: None,
+            tapped: false,
             ears: Vec::new(),
             absence,
             left: None,
@@ -167,7 +170,9 @@ impl Run {
         let senders = links.iter_mut().map(Link::sender).collect();
         self.listen(&mut links);
         let policies = self.job.outputs.iter().map(|output| output.overload);
-        let pacer = Pacer::new(self.clock, consumer, senders, policies, self.job.speed);
+        let clock = Precise::new(self.clock, Policy::Adaptive);
+        let mut pacer = Pacer::new(clock, consumer, senders, policies, self.job.speed);
+        pacer.watching = self.job.watch.take().map(Watching::new);
         let (pacing, mut notices, mut done) = self.start_pacer(pacer)?;
         self.attend(on, &links, &mut signals, &mut program, &mut notices, &mut done).await;
         let (mut pacer, granted) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
@@ -219,6 +224,11 @@ impl Run {
     fn listen(&mut self, links: &mut [Link]) {
         for (i, link) in links.iter_mut().enumerate() {
             let Some(receiver) = link.receiver() else { continue };
+            if let Some(tap) = self.job.tap.take_if(|_| i == 0) {
+                self.ears.push(tokio::task::spawn_local(answers::tapped(receiver, tap)));
+                self.tapped = true;
+                continue;
+            }
             let ear = Ear {
                 plan: self.job.plan.clone(),
                 shared: self.shared.clone(),
@@ -235,12 +245,12 @@ impl Run {
     }
 
     /// Starts the pacing thread; the channels bring a notice about what it was not allowed, and its end.
-    fn start_pacer(&self, mut pacer: Pacer<WallClock>) -> Result<Paced, SessionError> {
-        let (shared, paced) = (self.shared.clone(), self.job.speed != Speed::Max);
+    fn start_pacer(&self, mut pacer: Pacer<Precise<WallClock>>) -> Result<Paced, SessionError> {
+        let (shared, paced, cpu) = (self.shared.clone(), self.job.speed != Speed::Max, self.job.cpu);
         let (tell, notices) = oneshot::channel();
         let (over, done) = oneshot::channel();
         let body = move || {
-            let granted = if paced { privileges() } else { Granted::default() };
+            let granted = if paced { Granted::ask(cpu) } else { Granted::default() };
             let _ = tell.send(granted.refused.clone());
             pacer.run(pacer.clock.now() + LEAD, &shared);
             let _ = over.send(());
@@ -306,7 +316,7 @@ impl Run {
     }
 
     /// Joins the producer, emptying the ring into the count of what was left while it ends.
-    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<WallClock>) -> (Made, Left) {
+    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<Precise<WallClock>>) -> (Made, Left) {
         self.shared.stop.store(true, Ordering::Relaxed);
         let mut left = Left::nothing(self.job.outputs.len());
         loop {
@@ -329,11 +339,17 @@ impl Run {
                 gone.get_or_insert(error.kind());
             }
         }
+        let pacing =
+            pacer.effort.share().filter(|_| self.job.speed != Speed::Max).map(|share| PacingReport {
+                spin_us: pacer.clock.margin().ns() as f64 / 1000.0,
+                pacing_cpu: share,
+                pinned_cpu: granted.cpu,
+            });
         let (mut tallies, gone, stretched) = (pacer.tallies, pacer.gone, pacer.stretched);
         let now = self.clock.now();
         tallies.iter_mut().for_each(|tally| tally.gaps.end(now));
         drop(pacer.senders);
-        if !self.heard.borrow().estimates.is_empty() {
+        if self.tapped || !self.heard.borrow().estimates.is_empty() {
             tokio::time::sleep(LAST_ANSWERS).await;
         }
         for ear in &self.ears {
@@ -363,6 +379,8 @@ impl Run {
             stretched_s: stretched as f64 * 1e-9,
             realtime: granted.priority,
             memory_locked: granted.memory,
+            pacing,
+            watched: pacer.watching.map(|watching| watching.seen),
             sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
             links: self.link_reports(&tallies, &gone, names, &made, &left),
             score: heard.scorer.score(&self.job.estimator),
@@ -402,6 +420,8 @@ impl Run {
             stretched_s: 0.0,
             realtime: false,
             memory_locked: false,
+            pacing: None,
+            watched: None,
             sensors: tally::sensors(&self.job.plan, &tallies, [0; 3], [0; 3], false),
             links: self.link_reports(&tallies, &gone, names, &Made::default(), &Left::nothing(gone.len())),
             score: None,
@@ -413,7 +433,7 @@ impl Run {
 
 /// What is left when both threads have ended.
 struct Ended {
-    pacer: Pacer<WallClock>,
+    pacer: Pacer<Precise<WallClock>>,
     links: Vec<Link>,
     program: Program,
     names: Vec<String>,
@@ -422,36 +442,11 @@ struct Ended {
     made: (Made, Left),
 }
 
-type Paced =
-    (JoinHandle<(Pacer<WallClock>, Granted)>, oneshot::Receiver<Option<String>>, oneshot::Receiver<()>);
-
-/// What the system granted the pacing thread.
-#[derive(Clone, Debug, Default)]
-struct Granted {
-    priority: bool,
-    memory: bool,
-    /// One notice about what it did not grant, and what would.
-    refused: Option<String>,
-}
-
-/// Asks for real-time priority for the calling thread and locked memory for the process.
-fn privileges() -> Granted {
-    let priority = os::set_realtime_priority(PRIORITY);
-    let memory = os::lock_memory();
-    let refused: Vec<_> = [("real-time priority", &priority), ("locked memory", &memory)]
-        .into_iter()
-        .filter_map(|(what, granted)| granted.as_ref().err().map(|error| format!("{what} ({error})")))
-        .collect();
-    let notice = format!(
-        "not granted: {}; packets may be later on a busy machine. To grant it: `sudo setcap cap_sys_nice,cap_ipc_lock+ep` on this program, or `rtprio 50` and `memlock unlimited` in /etc/security/limits.conf",
-        refused.join(", ")
-    );
-    Granted {
-        priority: priority.is_ok(),
-        memory: memory.is_ok(),
-        refused: (!refused.is_empty()).then_some(notice),
-    }
-}
+type Paced = (
+    JoinHandle<(Pacer<Precise<WallClock>>, Granted)>,
+    oneshot::Receiver<Option<String>>,
+    oneshot::Receiver<()>,
+);
 
 #[cfg(test)]
 mod tests {
@@ -476,6 +471,9 @@ mod tests {
             command: Vec::new(),
             keep_stdout: false,
             estimator: String::new(),
+            cpu: None,
+            watch: None,
+            tap: None,
         };
         let read_a_while = move || {
             // Away for less than is allowed, it may come back.

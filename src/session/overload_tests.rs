@@ -48,7 +48,7 @@ impl<F: FnMut(i64, &mut [Reader]) + Send> Clock for World<F> {
         self.now
     }
 
-    fn wait_until(&mut self, t: i64) {
+    fn sleep_until(&mut self, t: i64) {
         let mut readers = self.readers.lock().unwrap();
         for ms in self.now / MS + 1..=t / MS {
             (self.act)(ms, &mut readers);
@@ -307,8 +307,8 @@ impl<F: FnMut(i64, &mut [Reader]) + Send> Clock for Stepping<World<F>> {
         self.world.now()
     }
 
-    fn wait_until(&mut self, t: i64) {
-        self.world.wait_until(t);
+    fn sleep_until(&mut self, t: i64) {
+        self.world.sleep_until(t);
         if self.world.now >= self.at {
             self.world.now += std::mem::take(&mut self.step);
         }

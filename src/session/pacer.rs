@@ -2,7 +2,8 @@
 //! taken in time is the business of `overload`.
 
 use super::overload::{Due, Queue, RETRY};
-use super::tally::LinkTally;
+use super::tally::{Effort, LinkTally, SensorTally};
+use super::watch::Watching;
 use super::{Item, Shared};
 use crate::clock::Clock;
 use crate::link::{Sender, Sent};
@@ -41,6 +42,9 @@ pub(super) struct Pacer<C> {
     pub start: i64,
     /// For how long scene time stood still, ns: `start` has moved by as much.
     pub stretched: i64,
+    pub effort: Effort,
+    /// The comparison that `timing` asks for.
+    pub watching: Option<Watching>,
 }
 
 /// What was made and neither sent nor dropped.
@@ -84,12 +88,32 @@ impl<C: Clock> Pacer<C> {
         let tallies = senders.iter().map(|_| LinkTally::new()).collect();
         let gone = vec![None; senders.len()];
         let queues = policies.into_iter().map(Queue::new).collect();
-        Pacer { clock, ring, senders, tallies, gone, speed, queues, start: 0, stretched: 0 }
+        let effort = Effort::default();
+        Pacer {
+            clock,
+            ring,
+            senders,
+            tallies,
+            gone,
+            speed,
+            queues,
+            start: 0,
+            stretched: 0,
+            effort,
+            watching: None,
+        }
     }
 
     /// Sends everything, scene time 0 being at `start` (ns on its clock), until the ring has ended or all stops.
     pub(super) fn run(&mut self, start: i64, shared: &Shared) {
         self.start = start;
+        self.effort.resume(self.clock.now());
+        self.stream(shared);
+        self.effort.pause(self.clock.now());
+    }
+
+    fn stream(&mut self, shared: &Shared) {
+        let start = self.start;
         shared.start_ns.store(start, Ordering::Relaxed);
         while !shared.stopped() && self.gone.contains(&None) {
             let look_up = if self.something_waits() {
@@ -105,14 +129,17 @@ impl<C: Clock> Pacer<C> {
                 std::thread::sleep(EMPTY);
                 continue;
             };
+            if self.watching.as_ref().is_some_and(|watching| watching.interrupts(&item.packet)) {
+                self.compare(shared);
+                continue;
+            }
             let due = match self.speed {
                 Speed::Times(1.0) => self.start + item.packet.due.0,
                 Speed::Times(times) => self.start + (item.packet.due.0 as f64 / times) as i64,
                 Speed::Max => i64::MIN,
             };
             if due > self.clock.now() + look_up {
-                let soon = self.clock.now() + look_up;
-                self.clock.wait_until(soon);
+                self.clock.sleep_until(self.clock.now() + look_up / 2);
                 continue;
             }
             // The packet leaves the ring before the wait, so that nothing stands between the wait and the write.
@@ -123,6 +150,16 @@ impl<C: Clock> Pacer<C> {
             self.deliver(output, Due { packet, due }, shared);
             shared.scene_ns.store(packet.due.0, Ordering::Relaxed);
         }
+    }
+
+    /// A slice of the bare timer, in which scene time stands still.
+    fn compare(&mut self, shared: &Shared) {
+        let Some(watching) = &mut self.watching else { return };
+        self.effort.pause(self.clock.now());
+        self.start = watching.bare_timer(&mut self.clock, shared);
+        self.tallies.iter_mut().flat_map(|tally| &mut tally.sensors).for_each(SensorTally::pause);
+        shared.start_ns.store(self.start, Ordering::Relaxed);
+        self.effort.resume(self.clock.now());
     }
 
     /// Writes a packet, and counts it if the link took it.
@@ -140,6 +177,7 @@ impl<C: Clock> Pacer<C> {
                 tally.sent(packet, before, late, self.clock.now() - before);
                 shared.packets.fetch_add(1, Ordering::Relaxed);
                 self.forget_replaced(output, packet, shared);
+                self.watch(packet, *due, Some(before));
             }
             Sent::Away => tally.gaps.begin(before),
             Sent::Gone(kind) => self.gone[output] = Some(kind),
@@ -153,6 +191,13 @@ impl<C: Clock> Pacer<C> {
         let lost = self.tallies[output].dropped(packet);
         shared.dropped.fetch_add(lost, Ordering::Relaxed);
         self.forget_replaced(output, packet, shared);
+        self.watch(packet, self.start + packet.due.0, None);
+    }
+
+    fn watch(&mut self, packet: &Packet, due: i64, sent: Option<i64>) {
+        if let Some(watching) = &mut self.watching {
+            watching.packet(packet, due, sent);
+        }
     }
 
     /// Samples that newer ones replaced before this packet are dropped, whatever becomes of it.

@@ -1,53 +1,74 @@
 //! Counting without allocating: what was sent and dropped, how late, how evenly.
 
-use crate::report::{Interval, Late, SensorReport, Spread};
+use crate::os;
+use crate::report::{SensorReport, Times};
 use crate::scene::Plan;
 use crate::sensor::SensorKind;
 use crate::wire::Packet;
-use hdrhistogram::Histogram;
-
-/// The longest time told apart, ns; longer ones count as this.
-const LONGEST: u64 = 60_000_000_000;
+use std::time::Duration;
 
 /// One sensor on one link.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct SensorTally {
     pub sent: u64,
     pub dropped: u64,
-    first: i64,
-    last: i64,
-    late: Histogram<u64>,
-    interval: Histogram<u64>,
-    write: Histogram<u64>,
+    /// When the last one was sent, unless a pause has come since.
+    last: Option<i64>,
+    /// From the first to the last of each stretch without a pause, summed, ns.
+    span: i64,
+    late: Times,
+    interval: Times,
+    write: Times,
 }
 
 impl SensorTally {
-    pub(super) fn new() -> SensorTally {
-        // The bounds are constants that the library accepts; three digits keep percentiles within 0.1 %.
-        let histogram =
-            || Histogram::new_with_bounds(1, LONGEST, 3).unwrap_or_else(|_| unreachable!("constant bounds"));
-        SensorTally {
-            sent: 0,
-            dropped: 0,
-            first: 0,
-            last: 0,
-            late: histogram(),
-            interval: histogram(),
-            write: histogram(),
+    /// Counts a sample whose packet was written at `now` (ns), `late` ns after it was due, in `write` ns.
+    pub(super) fn sent(&mut self, now: i64, late: i64, write: i64) {
+        if let Some(last) = self.last.replace(now) {
+            self.interval.record(now - last);
+            self.span += now - last;
+        }
+        self.sent += 1;
+        self.late.record(late);
+        self.write.record(write);
+    }
+
+    /// The time to the next sample is no interval.
+    pub(super) fn pause(&mut self) {
+        self.last = None;
+    }
+
+    /// (n − 1)/(t_last − t_first), numerator and denominator summed over stretches without a pause, Hz.
+    fn hz(&self) -> Option<f64> {
+        (self.span > 0).then(|| self.interval.count() as f64 / (self.span as f64 * 1e-9))
+    }
+}
+
+/// How much of a core the calling thread uses, pauses left out.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Effort {
+    used: Duration,
+    spent: i64,
+    since: Option<(Duration, i64)>,
+}
+
+impl Effort {
+    /// Counts from now (ns) on.
+    pub(super) fn resume(&mut self, now: i64) {
+        self.since = Some((os::thread_cpu_time(), now));
+    }
+
+    /// Counts up to now.
+    pub(super) fn pause(&mut self, now: i64) {
+        if let Some((used, began)) = self.since.take() {
+            self.used += os::thread_cpu_time().saturating_sub(used);
+            self.spent += now - began;
         }
     }
 
-    /// Counts a sample whose packet was written at `now` (ns), `late` ns after it was due, in `write` ns.
-    pub(super) fn sent(&mut self, now: i64, late: i64, write: i64) {
-        if self.sent == 0 {
-            self.first = now;
-        } else {
-            self.interval.saturating_record((now - self.last).max(0) as u64);
-        }
-        self.last = now;
-        self.sent += 1;
-        self.late.saturating_record(late.max(0) as u64);
-        self.write.saturating_record(write.max(0) as u64);
+    /// The share of a core; `None` before anything was counted.
+    pub(super) fn share(&self) -> Option<f64> {
+        (self.spent > 0).then(|| self.used.as_secs_f64() / (self.spent as f64 * 1e-9))
     }
 }
 
@@ -55,12 +76,12 @@ impl SensorTally {
 impl SensorTally {
     /// How many times lateness was recorded.
     pub(super) fn lateness_count(&self) -> u64 {
-        self.late.len()
+        self.late.count()
     }
 
     /// The greatest lateness, ns, within the histogram's 0.1 %.
     pub(super) fn latest_ns(&self) -> i64 {
-        self.late.max() as i64
+        self.late.late().map_or(0, |late| (late.max * 1e3) as i64)
     }
 }
 
@@ -84,7 +105,7 @@ impl LinkTally {
             packets: 0,
             bytes: 0,
             dropped: 0,
-            sensors: [0; 3].map(|_| SensorTally::new()),
+            sensors: Default::default(),
             gaps: Gaps::default(),
             first: 0,
             last: 0,
@@ -190,18 +211,15 @@ fn report(
     queued: [u64; 3],
     paced: bool,
 ) -> SensorReport {
-    let mut all = SensorTally::new();
+    let mut all = SensorTally::default();
     let mut sent_hz = None;
     for tally in tallies.iter().map(|link| &link.sensors[kind as usize]) {
         all.sent += tally.sent;
         all.dropped += tally.dropped;
-        // Equal bounds: adding cannot fail.
-        let _ = all.late.add(&tally.late);
-        let _ = all.interval.add(&tally.interval);
-        let _ = all.write.add(&tally.write);
-        if tally.sent > 1 && tally.last > tally.first {
-            sent_hz = sent_hz.or(Some((tally.sent - 1) as f64 / ((tally.last - tally.first) as f64 * 1e-9)));
-        }
+        all.late.add(&tally.late);
+        all.interval.add(&tally.interval);
+        all.write.add(&tally.write);
+        sent_hz = sent_hz.or(tally.hz());
     }
     SensorReport {
         name: kind.name().to_string(),
@@ -212,32 +230,9 @@ fn report(
         sent: all.sent,
         dropped: all.dropped,
         queued: queued[kind as usize],
-        late_us: (paced && !all.late.is_empty()).then(|| late(&all.late)),
-        interval_us: (paced && !all.interval.is_empty()).then(|| interval(&all.interval)),
-        write_us: (!all.write.is_empty()).then(|| spread(&all.write)),
+        late_us: all.late.late().filter(|_| paced),
+        interval_us: all.interval.interval().filter(|_| paced),
+        write_us: all.write.spread(),
+        timing: None,
     }
-}
-
-fn us(ns: u64) -> f64 {
-    ns as f64 / 1000.0
-}
-
-fn late(histogram: &Histogram<u64>) -> Late {
-    Late {
-        min: us(histogram.min()),
-        p50: us(histogram.value_at_quantile(0.5)),
-        p99: us(histogram.value_at_quantile(0.99)),
-        p99_9: us(histogram.value_at_quantile(0.999)),
-        max: us(histogram.max()),
-    }
-}
-
-fn interval(histogram: &Histogram<u64>) -> Interval {
-    let Late { min, p50, p99, p99_9, max } = late(histogram);
-    Interval { min, std: histogram.stdev() / 1000.0, p50, p99, p99_9, max }
-}
-
-fn spread(histogram: &Histogram<u64>) -> Spread {
-    let Late { p50, p99, max, .. } = late(histogram);
-    Spread { p50, p99, max }
 }

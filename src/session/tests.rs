@@ -1,7 +1,7 @@
 use super::pacer::Pacer;
 use super::producer::{self, Made};
 use super::*;
-use crate::clock::VirtualClock;
+use crate::clock::{Clock, VirtualClock};
 use crate::link::{self, Far, Sender};
 use crate::player::Player;
 use crate::scene::Overload;
@@ -9,7 +9,7 @@ use crate::wire::{self, Protocol, Setup};
 use std::convert::Infallible;
 
 /// 1 kHz gyro and accel, 100 Hz mag, for a second.
-const SCENE: &str = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";
+pub(super) const SCENE: &str = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";
 
 pub(super) fn plan(text: &str) -> Plan {
     Plan::parse(text, "test", "test", &[]).unwrap_or_else(|error| panic!("{error}"))
@@ -20,7 +20,7 @@ fn output(text: &str) -> Output {
 }
 
 /// The ring of a whole scene, made ahead, and what was made.
-fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) {
+pub(super) fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) {
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
     let made = producer::produce(plan, &[output(to)], plan.duration, ring, shared);
     (consumer, made)
@@ -34,7 +34,7 @@ pub(super) fn memory(capacity: usize) -> (Sender, Far) {
 }
 
 /// The identity that nothing is missed silently, in samples of every kind.
-fn accounts_balance(made: &Made, pacer: &mut Pacer<VirtualClock>) {
+pub(super) fn accounts_balance(made: &Made, pacer: &mut Pacer<impl Clock>) {
     let left = pacer.left();
     for kind in 0..3 {
         let tally = &pacer.tallies[0].sensors[kind];
@@ -181,6 +181,9 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
             command: Vec::new(),
             keep_stdout: false,
             estimator: String::new(),
+            cpu: None,
+            watch: None,
+            tap: None,
         };
         let outcome = run(job, &mut |_| {}).unwrap();
         assert_eq!(outcome.played, plan.duration);

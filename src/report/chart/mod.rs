@@ -14,6 +14,7 @@
 //! | `grid` | a table of verdicts |
 //! | `curves` | measured curves with their bands, and theory |
 //! | `bars` | what adds up, a bar a step |
+//! | `stacked` | several of these, one under the other |
 //!
 //! The drawing is `plotters`' SVG backend, in quarters of a pixel: it reads no system font, and
 //! leaves every coordinate to us. `kuva` 0.6, tried on the same pictures, has no table of verdicts
@@ -29,6 +30,7 @@ mod loglog;
 mod panels;
 mod plot;
 mod series;
+mod stack;
 #[cfg(test)]
 mod tests;
 
@@ -38,3 +40,4 @@ pub use grid::{Cell, Grid, Row, Verdict, grid};
 pub use histogram::{Distribution, Histogram, Marker, Shape, histogram};
 pub use loglog::{LogLog, Method, Motion, loglog};
 pub use panels::{Line, LineKind, Panel, Panels, panels};
+pub use stack::stacked;

@@ -1,0 +1,225 @@
+//! `ratetable timing`: how late and how even a stream is, measured at both ends and against a bare timer.
+
+mod charts;
+mod collector;
+mod ledger;
+mod reader;
+mod results;
+
+use super::progress::Bar;
+use super::{Refusal, Verdict, options, run, say};
+use crate::clock::WallClock;
+use crate::dataset::Folder;
+use crate::link::Address;
+use crate::report::Limit;
+use crate::scene::{Destination, Output, Plan};
+use crate::session::{self, Event, Job, Outcome, Speed, Tap, Watch};
+use crate::time::{NANOS, Rate, SimTime};
+use crate::wire::{self, Protocol};
+use collector::Collector;
+use ledger::Ledger;
+use reader::{Arrivals, Came, Reader};
+use std::cell::RefCell;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The scene unless another is named: gyro and accelerometer at 1 kHz, magnetometer at 100 Hz.
+const SCENE: &str = "still";
+/// How long the stream and the bare timer take turns of.
+const SLICE: SimTime = SimTime(NANOS);
+/// How long to wait for somebody on a link that is no pty.
+const WAIT: Duration = Duration::from_secs(30);
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A TOML file or the name of a built-in scene
+    #[arg(default_value = SCENE)]
+    scene: String,
+    /// Over what: a pty, read at its other end, or a serial port with a loopback plug (TX to RX); any other link is
+    /// measured at the sending end alone [default: the scene's only output, or mpu@pty]
+    #[arg(long, value_name = "PROTOCOL@LINK", value_parser = options::output)]
+    to: Option<Output>,
+    /// How long to stream (10 s have a 99.9th percentile at 1 kHz), not counting the bare timer's slices, which take as long again
+    #[arg(long = "for", value_name = "TIME|forever", default_value = "10s", value_parser = options::span)]
+    span: SimTime,
+    /// Keep the pacing thread to this processor
+    #[arg(long, value_name = "N", value_parser = options::processor)]
+    cpu: Option<usize>,
+    /// Override one key of the scene, such as gyro.rate='8 kHz'
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Fail (exit 1) unless a field of the report keeps to this, such as 'ratio_p99<1.5'
+    #[arg(long = "limit", value_name = "FIELD<VALUE", value_parser = options::limit)]
+    limit: Vec<Limit>,
+    /// Write every sample's times as timing.csv, a picture and the report into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the output folder if there is one
+    #[arg(long)]
+    force: bool,
+    /// Print the report as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    let plan = Plan::load(&arguments.scene, &arguments.set)?;
+    let output = output(arguments, &plan)?;
+    let limits = options::limits(&arguments.limit, &plan)?;
+    let mut report = results::shape(&plan, &output);
+    let as_json = serde_json::to_value(&report)?;
+    limits.iter().try_for_each(|limit| limit.check(&as_json))?;
+    wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
+    let folder = arguments.out.as_ref().map(|dir| Folder::open(dir, arguments.force)).transpose()?;
+    let measured = measure(arguments, Arc::new(plan), output, folder.as_ref())?;
+    results::fill(&mut report, &measured);
+    results::judge(&mut report, &limits)?;
+    eprint!("{}", results::text(&report, measured.outcome.interrupted));
+    if let (Some(folder), Some(dir)) = (folder, &arguments.out) {
+        let picture = charts::timing(&report, &measured.ledger, &measured.bare());
+        folder.put("timing.svg", picture.as_bytes())?;
+        folder.put("report.json", (serde_json::to_string_pretty(&report)? + "\n").as_bytes())?;
+        folder.commit()?;
+        eprintln!("{}: timing.csv, timing.svg, report.json", dir.display());
+    }
+    if arguments.json {
+        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+    }
+    Ok(if report.run.ok { Verdict::Fine } else { Verdict::Failed })
+}
+
+/// The one link that is measured.
+fn output(arguments: &Arguments, plan: &Plan) -> Result<Output, Refusal> {
+    let on_a_pty = || {
+        Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None, baud: None } })
+    };
+    let output = match (&arguments.to, plan.outputs.as_slice()) {
+        (Some(to), _) => to.clone(),
+        (None, []) => on_a_pty(),
+        (None, [only]) => only.clone(),
+        (None, several) => {
+            let names: Vec<_> = several.iter().map(|output| output.to.to_string()).collect();
+            return Err(Refusal(format!(
+                "timing measures one link, and the scene has {} ({}): name one with --to",
+                names.len(),
+                names.join(", ")
+            )));
+        }
+    };
+    match output.to.address.is_stdout() && arguments.json {
+        true => Err(Refusal(
+            "--json prints the report on standard output, where `-` already sends packets: leave out one of the two"
+                .into(),
+        )),
+        false => Ok(output),
+    }
+}
+
+/// Everything that a run brought.
+struct Measured {
+    outcome: Outcome,
+    ledger: Ledger,
+    /// Who received, and what came there.
+    far: Option<(&'static str, Came)>,
+    rate: Rate,
+}
+
+impl Measured {
+    fn bare(&self) -> crate::report::Times {
+        self.outcome.watched.as_ref().map(|watched| watched.late.clone()).unwrap_or_default()
+    }
+}
+
+/// Streams, with somebody at the other end where there can be one.
+fn measure(
+    arguments: &Arguments,
+    plan: Arc<Plan>,
+    output: Output,
+    folder: Option<&Folder>,
+) -> Result<Measured, Refusal> {
+    let clock = WallClock::start();
+    let (records, recorded) = rtrb::RingBuffer::new(collector::RING);
+    let (ring, arrived) = rtrb::RingBuffer::new(collector::RING);
+    let far = Far::of(&output.to.address);
+    let rate = plan.sensors.first().map_or(Rate::hz(1000), |sensor| sensor.rate);
+    let ledger = Ledger::new(&plan, far != Far::Nobody, SLICE, 0);
+    let csv = folder.map(|folder| folder.file("timing.csv")).transpose()?;
+    let collector = Collector::start(ledger, recorded, arrived, csv);
+    let mut arrivals = Some(Arrivals::new(output.to.protocol, clock, ring));
+    let heard = Rc::new(RefCell::new(Came::default()));
+    let tap = arrivals.take_if(|_| far == Far::Loopback).map(|arrivals| tap(arrivals, heard.clone()));
+    let job = Job {
+        end: arguments.span,
+        outputs: vec![output],
+        speed: Speed::Times(1.0),
+        wait: WAIT,
+        command: Vec::new(),
+        keep_stdout: arguments.json,
+        estimator: String::new(),
+        cpu: arguments.cpu,
+        watch: Some(Watch { clock, slice: SLICE, rate, records }),
+        tap,
+        plan,
+    };
+    let bar = Bar::new(job.end);
+    let mut reader = None;
+    let outcome = session::run(job, &mut |event| match event {
+        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
+        Event::Ready(name) => {
+            bar.line(&format!("ready: {name}"));
+            if let (Far::Reader, Some(arrivals)) = (far, arrivals.take()) {
+                let path = name.split_once('@').map_or(name, |(_, path)| path);
+                reader = Some(Reader::start(path.into(), arrivals));
+            }
+        }
+        Event::Started => {}
+        Event::Progress(progress) => bar.live(&progress),
+    });
+    bar.clear();
+    let came = reader.map(Reader::end).transpose();
+    let ledger = collector.end();
+    let outcome = outcome?;
+    let came = came.map_err(|error| Refusal(format!("the reader at the pty's other end failed: {error}")))?;
+    let looped = (far == Far::Loopback).then(|| *heard.borrow());
+    let ledger = ledger?;
+    let far = came.map(|came| ("a reader on the pty", came));
+    let far = far.or(looped.map(|came| ("the port itself, through a loopback plug", came)));
+    // Silence is no measurement: without a plug nothing comes back.
+    let far =
+        far.filter(|(_, came)| came.samples > 0 || ledger.sensors.iter().any(|sensor| sensor.received > 0));
+    Ok(Measured { outcome, ledger, far, rate })
+}
+
+/// Reads back what a port sends to itself.
+fn tap(mut arrivals: Arrivals, heard: Rc<RefCell<Came>>) -> Tap {
+    Tap(Box::new(move |bytes| {
+        arrivals.take(bytes);
+        *heard.borrow_mut() = arrivals.came();
+    }))
+}
+
+/// Who can be at the other end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Far {
+    /// A thread of ours.
+    Reader,
+    /// The port itself.
+    Loopback,
+    /// Nobody that we know of.
+    Nobody,
+}
+
+impl Far {
+    fn of(address: &Address) -> Far {
+        match address {
+            Address::Pty { .. } => Far::Reader,
+            Address::Serial { .. } => Far::Loopback,
+            _ => Far::Nobody,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,63 @@
+//! Waits that end on time: an absolute sleep to shortly before, then a short bounded spin.
+
+use super::{Clock, Margin, Policy};
+
+/// Awake for longer than this without a sleep, ns, it rests.
+const AWAKE: i64 = 20_000_000;
+/// For so long, ns: a tenth of its time, so that a thread that is too late to sleep, packet after packet, never meets
+/// the kernel's limit for real-time threads (95 % of a second, then a gap of 50 ms).
+const REST: i64 = 2_000_000;
+
+/// A clock whose waits end on time as far as its sleeps allow.
+#[derive(Clone, Debug)]
+pub struct Precise<C> {
+    clock: C,
+    margin: Margin,
+    /// When it slept last, ns.
+    slept: i64,
+}
+
+impl<C: Clock> Precise<C> {
+    /// Over a clock whose sleeps end late.
+    pub fn new(clock: C, policy: Policy) -> Precise<C> {
+        let slept = clock.now();
+        Precise { clock, margin: Margin::new(policy), slept }
+    }
+
+    /// The margin as it is now.
+    pub fn margin(&self) -> Margin {
+        self.margin
+    }
+
+    /// The clock below.
+    pub fn inner(&self) -> &C {
+        &self.clock
+    }
+}
+
+impl<C: Clock> Clock for Precise<C> {
+    fn now(&self) -> i64 {
+        self.clock.now()
+    }
+
+    fn sleep_until(&mut self, t: i64) {
+        self.clock.sleep_until(t);
+        self.slept = self.clock.now();
+    }
+
+    fn spin_until(&mut self, t: i64) {
+        self.clock.spin_until(t);
+    }
+
+    fn wait_until(&mut self, t: i64) {
+        let now = self.clock.now();
+        let wake = t - self.margin.of_wait(t - now);
+        if wake > now {
+            self.sleep_until(wake);
+            self.margin.learn(self.slept - wake);
+        } else if now - self.slept > AWAKE {
+            self.sleep_until(now + REST);
+        }
+        self.clock.spin_until(t);
+    }
+}
