@@ -77,13 +77,13 @@ struct Quantise {
 
 impl Term for Quantise {
     fn apply(&mut self, block: &mut Block) {
-        let lsb = self.lsb;
+        let (lsb, per_unit) = (self.lsb, 1.0 / self.lsb);
         self.mount.on_chip(&mut block.reading, |column| {
-            let largest = column.iter().fold(0f64, |largest, x| largest.max(x.abs()));
-            if largest < SMALL * lsb {
-                column.iter_mut().for_each(|x| *x = round_small(*x / lsb) * lsb);
+            let beyond = |beyond: bool, x: &f64| beyond | (x.abs() >= SMALL * lsb);
+            if column.iter().fold(false, beyond) {
+                column.iter_mut().for_each(|x| *x = libm::round(*x * per_unit) * lsb);
             } else {
-                column.iter_mut().for_each(|x| *x = libm::round(*x / lsb) * lsb);
+                column.iter_mut().for_each(|x| *x = round_small(*x * per_unit) * lsb);
             }
         });
     }
