@@ -5,6 +5,7 @@
 #     benches/timing.sh             a minute of stream at each rate, twice as long on the clock: up to 12 minutes
 #     benches/timing.sh 10s         shorter
 #     benches/timing.sh long        ten minutes at full rate, and the memory it takes (20 minutes on the clock)
+#     benches/timing.sh long 2min   shorter
 #
 # Results go to the folder in $OUT (default: target/timing).
 set -euo pipefail
@@ -38,9 +39,9 @@ best_of_three() {
 
 resident() { awk '/VmRSS/ { print $2 }' "/proc/$1/status"; }
 
-# Ten minutes: what is resident after the first half minute is what is resident in the end.
+# What is resident after the first half minute is what is resident in the end.
 long() {
-    span=600s
+    span=$1
     measure long 0.65 --set "gyro.rate='8 kHz'" &
     local pid=$! child first last seen
     sleep 30
@@ -57,7 +58,7 @@ long() {
 }
 
 if [ "$span" = long ]; then
-    long
+    long "${2:-600s}"
     exit
 fi
 failed=0

@@ -38,6 +38,9 @@ pub fn play_and_tell<T: Send + 'static>(
         command: Vec::new(),
         keep_stdout: false,
         estimator: "firmware".into(),
+        cpu: None,
+        watch: None,
+        tap: None,
     };
     let (mut waiting, mut running) = (Some(other_side), None);
     let outcome = session::run(job, &mut |event| {
