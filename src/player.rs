@@ -60,6 +60,7 @@ pub struct Player<'a> {
     schedule: Schedule,
     channels: Vec<Channel>,
     due: Vec<Due>,
+    times: Vec<SimTime>,
     truth: Vec<Truth>,
     block: usize,
 }
@@ -86,6 +87,7 @@ impl<'a> Player<'a> {
             schedule: Schedule::new(ticks, end),
             channels: channels.collect(),
             due: Vec::with_capacity(block),
+            times: Vec::with_capacity(block),
             truth: Vec::with_capacity(block),
             block: block.max(1),
         }
@@ -100,7 +102,9 @@ impl<'a> Player<'a> {
         self.due.clear();
         self.due.extend(self.schedule.by_ref().take(self.block));
         self.truth.clear();
-        self.trajectory.fill(self.due.iter().map(|due| due.t), &mut self.truth);
+        self.times.clear();
+        self.times.extend(self.due.iter().map(|due| due.t));
+        self.trajectory.fill(&self.times, &mut self.truth);
         for (i, channel) in self.channels.iter_mut().enumerate() {
             channel.fill(i, &self.due, &self.truth, self.trajectory);
         }

@@ -53,7 +53,7 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
     let text = String::from_utf8(done.get_output().stdout.clone()).unwrap();
     assert!(text.contains("coning") && text.contains("magnus-4"), "{text}");
 
-    let names = ["accuracy.csv", "accuracy.svg", "stability.csv", "stability.svg"];
+    let names = ["accuracy.csv", "accuracy.svg", "cost.csv", "cost.svg", "stability.csv", "stability.svg"];
     assert_eq!(files(&out), names.map(String::from).into());
     let (accuracy, stability) = (out.join("accuracy.csv"), out.join("stability.csv"));
     let columns = [
@@ -112,11 +112,11 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
     for (arguments, says) in [
         (
             &["acuracy"][..],
-            "`acuracy` is neither a study (accuracy, stability, all) nor a scene, built in or a file; did you mean `accuracy`?",
+            "`acuracy` is neither a study (accuracy, stability, cost, all) nor a scene, built in or a file; did you mean `accuracy`?",
         ),
         (
             &["acuracy", "coning"],
-            "`acuracy` is no study (accuracy, stability, all); did you mean `accuracy`?",
+            "`acuracy` is no study (accuracy, stability, cost, all); did you mean `accuracy`?",
         ),
         (&["coning", "still"], "`coning` is a scene, and so `still` is one too many"),
         (&["accuracy", "nowhere.toml"], "neither a scene file"),
@@ -131,4 +131,32 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
         let why = refusal(arguments);
         assert!(why.contains("bad.toml:3:") && why.contains("a unit is missing"), "{why}");
     }
+}
+
+#[test]
+fn the_cost_of_a_scene_is_told_term_by_term() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    let arguments = ["cost", "mpu-9250", "--quick", "--json", "--out", out.to_str().unwrap()];
+    let done = study(&arguments).assert().success();
+    let cost: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    assert_eq!(cost["scene"], "mpu-9250");
+    for field in ["samples", "nine_axis_samples_per_s", "floor_samples_per_s", "ratio", "normals_per_sample"]
+    {
+        assert!(cost[field].as_f64().unwrap() > 0.0, "{field}: {cost}");
+    }
+    let terms = cost["terms"].as_array().unwrap();
+    let names: Vec<_> = terms.iter().map(|term| term["term"].as_str().unwrap()).collect();
+    assert!(names[0] == "truth" && names.contains(&"white_noise"), "{names:?}");
+    assert!(terms.iter().all(|term| term["ns_per_sample"].as_f64().unwrap() > 0.0));
+    assert_eq!(files(&out), ["cost.csv", "cost.svg"].map(String::from).into());
+    let table = std::fs::read_to_string(out.join("cost.csv")).unwrap();
+    assert_eq!(table.lines().next(), Some("term,ns_per_sample"));
+    assert_eq!(table.lines().count(), 1 + names.len());
+    // Without noise there is no floor to be set against.
+    let quiet = folder.path().join("quiet.toml");
+    std::fs::write(&quiet, "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\n").unwrap();
+    let done = study(&["cost", quiet.to_str().unwrap(), "--quick", "--json"]).assert().success();
+    let cost: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    assert!(cost["ratio"].is_null() && cost["nine_axis_samples_per_s"].as_f64().unwrap() > 0.0, "{cost}");
 }

@@ -6,7 +6,7 @@
 //! never on which were asked before, and nothing adds up.
 
 use super::Motion;
-use crate::geometry::Attitude;
+use crate::geometry::{Attitude, Body, Nav, Vector};
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 
@@ -33,31 +33,91 @@ impl Stepped {
         Stepped { half, cell_ns, cell: DQuat::IDENTITY, from: 0, until: 0 }
     }
 
-    /// The attitude `since` the start of the segment, which began at `start`; for any order of times, cheap in theirs.
-    pub(super) fn at(&mut self, motion: &dyn Motion, start: Attitude, since: SimTime) -> Attitude {
-        let ns = since.0;
-        if ns >= self.until || ns < self.from {
-            self.from = ns.div_euclid(self.cell_ns) * self.cell_ns;
+    /// The attitudes at times `since` the start of the segment, which began at `start`; in any order, but cheap in theirs.
+    pub(super) fn at<const N: usize>(
+        &mut self,
+        motion: &dyn Motion,
+        start: Attitude,
+        since: [SimTime; N],
+    ) -> Many<N> {
+        let (first, last) = (since[0].0, since[N - 1].0);
+        if first < self.from || first >= self.until {
+            self.from = first.div_euclid(self.cell_ns) * self.cell_ns;
             self.until = self.from.saturating_add(self.cell_ns);
             self.cell = motion.at(start, SimTime(self.from).exact_seconds()).attitude.q;
         }
-        if ns == self.from || self.half == DVec3::ZERO {
-            return Attitude::from_quat(self.cell);
+        if last >= self.until {
+            // Across two cells: one by one.
+            let mut many = Many { q: [[0.0; N]; 4] };
+            for (i, &since) in since.iter().enumerate() {
+                let one = self.at(motion, start, [since]);
+                (0..4).for_each(|k| many.q[k][i] = one.q[k][0]);
+            }
+            return many;
         }
-        Attitude::from_quat(self.cell * small(self.half * (ns - self.from) as f64))
+        self.within(since.map(|since| (since.0 - self.from) as f64))
+    }
+
+    /// So many nanoseconds into the cell. The same operations on each of several columns, which the processor does on
+    /// two at a time.
+    fn within<const N: usize>(&self, ns: [f64; N]) -> Many<N> {
+        let DQuat { x, y, z, w } = self.cell;
+        let mut q = [[0.0; N]; 4];
+        for i in 0..N {
+            let (hx, hy, hz) = (self.half.x * ns[i], self.half.y * ns[i], self.half.z * ns[i]);
+            let square = hx * hx + hy * hy + hz * hz;
+            let (sinc, c) = (series(square, &SINC), series(square, &COS));
+            let (bx, by, bz) = (hx * sinc, hy * sinc, hz * sinc);
+            q[0][i] = w * bx + x * c + y * bz - z * by;
+            q[1][i] = w * by - x * bz + y * c + z * bx;
+            q[2][i] = w * bz + x * by - y * bx + z * c;
+            q[3][i] = w * c - x * bx - y * by - z * bz;
+        }
+        Many { q }
     }
 }
 
-/// `exp` of a small half rotation vector: the series of sin(x)/x and cos(x) in x², to x¹⁰ and x¹².
-fn small(half: DVec3) -> DQuat {
-    const SINC: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
-    const COS: [f64; 6] =
-        [-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
-    let y = half.length_squared();
-    let sinc = 1.0 + y * (SINC[0] + y * (SINC[1] + y * (SINC[2] + y * (SINC[3] + y * SINC[4]))));
-    let cos = 1.0 + y * (COS[0] + y * (COS[1] + y * (COS[2] + y * (COS[3] + y * (COS[4] + y * COS[5])))));
-    let b = half * sinc;
-    DQuat::from_xyzw(b.x, b.y, b.z, cos)
+/// Several attitudes as columns x, y, z, w.
+pub(super) struct Many<const N: usize> {
+    q: [[f64; N]; 4],
+}
+
+impl<const N: usize> Many<N> {
+    /// One of them.
+    pub(super) fn attitude(&self, i: usize) -> Attitude {
+        let [x, y, z, w] = &self.q;
+        Attitude::from_quat(DQuat::from_xyzw(x[i], y[i], z[i], w[i]))
+    }
+
+    /// What they make of a nav vector in body axes: [`rotate`](crate::geometry::rotate) by the inverse, column by
+    /// column.
+    pub(super) fn to_body(&self, v: Vector<Nav>) -> [Vector<Body>; N] {
+        let [x, y, z, w] = &self.q;
+        let v = v.v;
+        let mut seen = [Vector::ZERO; N];
+        for i in 0..N {
+            let (bx, by, bz) = (-x[i], -y[i], -z[i]);
+            let (tx, ty, tz) =
+                (2.0 * (by * v.z - v.y * bz), 2.0 * (bz * v.x - v.z * bx), 2.0 * (bx * v.y - v.x * by));
+            seen[i] = Vector::new(
+                v.x + w[i] * tx + (by * tz - ty * bz),
+                v.y + w[i] * ty + (bz * tx - tz * bx),
+                v.z + w[i] * tz + (bx * ty - tx * by),
+            );
+        }
+        seen
+    }
+}
+
+/// sin(x)/x in x², to x¹⁰.
+const SINC: [f64; 6] = [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
+/// cos(x) in x², to x¹².
+const COS: [f64; 7] =
+    [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
+
+/// The polynomial of these coefficients, the constant one first.
+fn series<const N: usize>(square: f64, coefficients: &[f64; N]) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * square + coefficient)
 }
 
 #[cfg(test)]
@@ -75,11 +135,22 @@ mod tests {
             let times = (0..4000i64).map(|k| SimTime(k * 977_777 % 3_000_000_000));
             let mut stepped = Stepped::new(rate);
             for t in times {
-                let q = stepped.at(&*motion, start, t);
+                let q = stepped.at(&*motion, start, [t]).attitude(0);
                 let exact = motion.at(start, t.exact_seconds()).attitude;
                 assert!(angle_between(q.q, exact.q) < 1e-15, "{rate} at {t}");
                 assert!((q.q.length() - 1.0).abs() < 1e-15);
-                assert_eq!(q, Stepped::new(rate).at(&*motion, start, t), "{rate} at {t}");
+                assert_eq!(q, Stepped::new(rate).at(&*motion, start, [t]).attitude(0), "{rate} at {t}");
+                let v = Vector::new(3.0, -1.0, 9.80665);
+                let seen = stepped.at(&*motion, start, [t]).to_body(v);
+                assert_eq!(seen[0], q.inverse().apply(v));
+            }
+            // Several at once, across the ends of cells too, are each as it is alone.
+            for k in 0..2000i64 {
+                let times = [0, 1, 2, 3].map(|i| SimTime((4 * k + i) * 1_234_567));
+                let many = stepped.at(&*motion, start, times);
+                for (i, t) in times.into_iter().enumerate() {
+                    assert_eq!(many.attitude(i), Stepped::new(rate).at(&*motion, start, [t]).attitude(0));
+                }
             }
         }
     }

@@ -139,26 +139,50 @@ impl Trajectory {
         self.in_segment(segment, t, (t - segment.start).exact_seconds())
     }
 
-    /// The truth at each of `times`, appended to `truth`; the quickest if they are in order.
-    pub fn fill(&self, times: impl Iterator<Item = SimTime>, truth: &mut Vec<Truth>) {
-        let mut segment = self.segment(SimTime::ZERO);
-        let steps =
-            |segment: &Segment| segment.motion.constant_rate().map(|rate| (rate, Stepped::new(rate.v)));
-        let mut stepped = steps(segment);
-        truth.extend(times.map(|t| {
-            if t < segment.start || t >= segment.end {
-                segment = self.segment(t);
-                stepped = steps(segment);
+    /// The truth at each of `times`, which are in order, appended to `truth`.
+    pub fn fill(&self, times: &[SimTime], truth: &mut Vec<Truth>) {
+        let mut rest = times;
+        while let Some(&first) = rest.first() {
+            let segment = self.segment(first);
+            let (within, after) = rest.split_at(rest.partition_point(|&t| t < segment.end).max(1));
+            match segment.motion.constant_rate() {
+                Some(rate) => self.fill_turning(segment, rate, within, truth),
+                None => truth.extend(
+                    within.iter().map(|&t| self.in_segment(segment, t, (t - segment.start).exact_seconds())),
+                ),
             }
-            let since = t - segment.start;
-            match &mut stepped {
-                Some((rate, stepped)) => {
-                    let attitude = stepped.at(&*segment.motion, segment.attitude, since);
-                    self.felt(t, Kinematics { attitude, rate: *rate, acceleration: Vector::ZERO })
-                }
-                None => self.in_segment(segment, t, since.exact_seconds()),
-            }
-        }));
+            rest = after;
+        }
+    }
+
+    /// At a constant rate, eight at a time.
+    fn fill_turning(&self, segment: &Segment, rate: Vector<Body>, times: &[SimTime], truth: &mut Vec<Truth>) {
+        let mut stepped = Stepped::new(rate.v);
+        let (eights, rest) = times.as_chunks::<8>();
+        for times in eights {
+            self.turning(&mut stepped, segment, rate, *times, truth);
+        }
+        for &t in rest {
+            self.turning(&mut stepped, segment, rate, [t], truth);
+        }
+    }
+
+    fn turning<const N: usize>(
+        &self,
+        stepped: &mut Stepped,
+        segment: &Segment,
+        rate: Vector<Body>,
+        times: [SimTime; N],
+        truth: &mut Vec<Truth>,
+    ) {
+        let since = times.map(|t| t - segment.start);
+        let many = stepped.at(&*segment.motion, segment.attitude, since);
+        let (force, field) = (many.to_body(-self.gravity), many.to_body(self.field));
+        for i in 0..N {
+            let (t, attitude, mut force) = (times[i], many.attitude(i), force[i]);
+            self.pushes(t, attitude.inverse()).for_each(|push| force += push);
+            truth.push(Truth { t, attitude, rate, force, field: field[i] });
+        }
     }
 
     fn segment(&self, t: SimTime) -> &Segment {

@@ -23,10 +23,10 @@ pub struct Cost {
     pub samples: u64,
     /// Of the whole scene.
     pub nine_axis_samples_per_s: f64,
-    /// Of drawing its normal numbers alone.
-    pub floor_samples_per_s: f64,
+    /// Of drawing its normal numbers alone; none where it has none.
+    pub floor_samples_per_s: Option<f64>,
     /// Floor ÷ scene: at least 1 but for noise of the clock.
-    pub ratio: f64,
+    pub ratio: Option<f64>,
     /// Normal numbers that a nine-axis sample draws.
     pub normals_per_sample: f64,
     /// The truth, then each error term in the order of the chain.
@@ -86,13 +86,13 @@ pub fn run(plan: &Plan, effort: Effort, now: &dyn Fn() -> Duration) -> Cost {
     let each = |time: Duration| time.as_nanos() as f64 / samples;
     let names = ["truth"].into_iter().chain(active.iter().copied());
     let terms = names.zip(&best).map(|(term, &time)| TermCost { term, ns_per_sample: each(time) }).collect();
-    let (scene, floor_ns) = (each(best[best.len() - 1]), each(least));
+    let (scene, floor_ns) = (each(best[best.len() - 1]), (floor.normals > 0).then(|| each(least)));
     Cost {
         scene: plan.name.clone(),
         samples: libm::round(samples) as u64,
         nine_axis_samples_per_s: 1e9 / scene,
-        floor_samples_per_s: 1e9 / floor_ns,
-        ratio: scene / floor_ns,
+        floor_samples_per_s: floor_ns.map(|ns| 1e9 / ns),
+        ratio: floor_ns.map(|ns| scene / ns),
         normals_per_sample: floor.normals as f64 / samples,
         terms,
     }
@@ -167,7 +167,7 @@ mod tests {
         let expected = TERMS.iter().map(|term| term.name).filter(|name| names.contains(name));
         assert_eq!(names[1..], expected.collect::<Vec<_>>()[..]);
         assert!(names.contains(&"white_noise") && names.contains(&"resolution"), "{names:?}");
-        assert_eq!(cost.ratio, 1.0);
+        assert_eq!(cost.ratio, Some(1.0));
         let ns = 1e6 / nine_axis(&plan, end(&plan, 500));
         assert!(cost.terms.iter().all(|term| (term.ns_per_sample - ns).abs() < 1e-9 * ns), "{cost:?}");
         assert!((cost.nine_axis_samples_per_s * ns * 1e-9 - 1.0).abs() < 1e-9);

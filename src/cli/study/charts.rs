@@ -86,16 +86,18 @@ pub fn cost(cost: &Cost) -> String {
         let added = term.ns_per_sample - std::mem::replace(&mut before, term.ns_per_sample);
         chart::Bar { name: term.term.replace('_', " "), value: term.ns_per_sample, added }
     });
+    let ratio = cost.ratio.map_or(String::new(), |ratio| {
+        let normals = number(cost.normals_per_sample);
+        format!(", {} times the cost of its {normals} normal numbers alone", number(ratio))
+    });
     chart::bars(&chart::Bars {
         title: format!("What a nine-axis sample of {} costs as error terms are added", cost.scene),
         subtitle: format!(
-            "one thread, in memory: {} million a second, {} times the cost of its {} normal numbers alone",
-            number(cost.nine_axis_samples_per_s / 1e6),
-            number(cost.ratio),
-            number(cost.normals_per_sample)
+            "one thread, in memory: {} million a second{ratio}",
+            number(cost.nine_axis_samples_per_s / 1e6)
         ),
         unit: "ns".into(),
         bars: bars.collect(),
-        line: Some(("its normal numbers alone".into(), 1e9 / cost.floor_samples_per_s)),
+        line: cost.floor_samples_per_s.map(|floor| ("its normal numbers alone".into(), 1e9 / floor)),
     })
 }

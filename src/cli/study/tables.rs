@@ -133,13 +133,14 @@ pub fn cost(cost: &Cost) -> String {
         vec![term.term.to_string(), number(added), number(term.ns_per_sample)]
     });
     let millions = |rate: f64| number(rate / 1e6);
+    let floor = cost.floor_samples_per_s.zip(cost.ratio).map_or(String::new(), |(floor, ratio)| {
+        let normals = number(cost.normals_per_sample);
+        format!("; its {normals} normal numbers alone: {} million; ratio {}", millions(floor), number(ratio))
+    });
     format!(
-        "{}\n{} million nine-axis samples/s of {}, one thread; its {} normal numbers alone: {} million; ratio {}\n",
+        "{}\n{} million nine-axis samples/s of {}, one thread{floor}\n",
         table(&["with", "ns more", "ns a sample"], &rows.collect::<Vec<_>>()),
         millions(cost.nine_axis_samples_per_s),
         cost.scene,
-        number(cost.normals_per_sample),
-        millions(cost.floor_samples_per_s),
-        number(cost.ratio)
     )
 }
