@@ -7,7 +7,8 @@ use crate::geometry::{Body, Vector};
 use crate::motion::{Trajectory, Truth};
 use crate::scene::Plan;
 use crate::schedule::{Due, Schedule, Ticks};
-use crate::sensor::{Block, Reading, Sampling, Sensor, SensorKind, SensorPlan};
+use crate::sensor::block::{self, Block, Column};
+use crate::sensor::{REFERENCE_TEMPERATURE, Reading, Sampling, Sensor, SensorKind, SensorPlan};
 use crate::time::SimTime;
 
 /// How many distinct ticks a block holds unless told otherwise.
@@ -45,13 +46,12 @@ impl Columns<'_> {
 }
 
 struct Channel {
-    plan: SensorPlan,
+    kind: SensorKind,
     sensor: Sensor,
     block: Block,
     /// Samples in earlier blocks.
     done: u64,
-    /// Of the sample before, for the mean.
-    last: Option<SimTime>,
+    feed: Feed,
 }
 
 /// Plays a plan.
@@ -69,12 +69,10 @@ impl<'a> Player<'a> {
     /// `block` is how many distinct ticks are computed at a time (at least 1).
     pub fn new(plan: &'a Plan, end: SimTime, block: usize) -> Player<'a> {
         let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
-        let channels = plan.sensors.iter().map(|sensor| Channel {
-            plan: sensor.clone(),
-            sensor: plan.build(sensor),
-            block: Block::default(),
-            done: 0,
-            last: None,
+        let channels = plan.sensors.iter().map(|plan_of| {
+            let sensor = plan.build(plan_of);
+            let feed = Feed::new(plan_of, &sensor);
+            Channel { kind: plan_of.kind, sensor, block: Block::default(), done: 0, feed }
         });
         Player {
             trajectory: &plan.trajectory,
@@ -141,22 +139,16 @@ impl<'a> Player<'a> {
 
 impl Channel {
     fn fill(&mut self, i: usize, due: &[Due], truth: &[Truth], trajectory: &Trajectory) {
-        let kind = self.plan.kind;
         let mine = |due: &Due| due.sensors >> i & 1 == 1;
-        match self.plan.sampling {
-            Sampling::Point if due.iter().all(mine) => {
-                self.block.extend(truth.iter().map(|it| sensed(kind, it)))
-            }
-            Sampling::Point => {
-                let mine = due.iter().zip(truth).filter(|(due, _)| mine(due));
-                self.block.extend(mine.map(|(_, truth)| sensed(kind, truth)));
-            }
-            Sampling::Average => {
-                for (due, truth) in due.iter().zip(truth).filter(|(due, _)| mine(due)) {
-                    let seen = self.last.map_or(*truth, |last| trajectory.mean(last, due.t));
-                    self.last = Some(due.t);
-                    self.block.extend([sensed(kind, &seen)].into_iter());
-                }
+        let point = self.feed.sampling == Sampling::Point;
+        if point && due.iter().all(mine) {
+            self.feed.extend(truth.iter(), &mut self.block);
+        } else if point {
+            let mine = due.iter().zip(truth).filter(|(due, _)| mine(due));
+            self.feed.extend(mine.map(|(_, truth)| truth), &mut self.block);
+        } else {
+            for (due, truth) in due.iter().zip(truth).filter(|(due, _)| mine(due)) {
+                self.feed.push(due.t, truth, trajectory, &mut self.block);
             }
         }
         self.sensor.read(&mut self.block);
@@ -166,12 +158,48 @@ impl Channel {
         let at = |columns: &[Vec<f64>; 3]| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
         Reading {
             sensor,
-            kind: self.plan.kind,
+            kind: self.kind,
             k: self.done + i as u64,
             value: at(&self.block.reading),
             truth: at(&self.block.truth),
             bias: at(&self.block.bias),
             clipped: self.block.clipped[i],
+            temperature: self.block.temperature.get(i).copied().unwrap_or(REFERENCE_TEMPERATURE),
+        }
+    }
+}
+
+/// What a sensor is given at its ticks: its error-free reading and, where its terms need it, more of the truth.
+#[derive(Debug)]
+pub struct Feed {
+    kind: SensorKind,
+    sampling: Sampling,
+    force: bool,
+    /// The tick before, for the mean.
+    last: Option<SimTime>,
+}
+
+impl Feed {
+    /// For a plan's sensor, before its first tick.
+    pub fn new(plan: &SensorPlan, sensor: &Sensor) -> Feed {
+        Feed { kind: plan.kind, sampling: plan.sampling, force: sensor.needs(Column::Force), last: None }
+    }
+
+    /// Adds the sample at `t`, at which this is the truth.
+    pub fn push(&mut self, t: SimTime, truth: &Truth, trajectory: &Trajectory, block: &mut Block) {
+        let seen = match (self.sampling, self.last) {
+            (Sampling::Average, Some(last)) => trajectory.mean(last, t),
+            _ => *truth,
+        };
+        self.last = Some(t);
+        self.extend([&seen].into_iter(), block);
+    }
+
+    /// Adds samples that are the truth at their ticks.
+    fn extend<'t>(&self, truth: impl Iterator<Item = &'t Truth> + Clone, block: &mut Block) {
+        block::extend(&mut block.truth, truth.clone().map(|truth| sensed(self.kind, truth)));
+        if self.force {
+            block::extend(&mut block.force, truth.map(|truth| truth.force));
         }
     }
 }

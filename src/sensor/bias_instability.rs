@@ -15,6 +15,7 @@ pub(super) static KIND: TermKind = TermKind {
     name: "bias_instability",
     about: "the bias wanders as a first-order Gauss-Markov process",
     stage: Stage::Bias,
+    needs: &[],
     keys: |sensor| {
         let reading = sensor.units().reading;
         vec![
@@ -26,7 +27,7 @@ pub(super) static KIND: TermKind = TermKind {
             },
             Key {
                 name: "correlation_time",
-                takes: Takes::PerAxis(Kind::TIME),
+                takes: Takes::PerAxis(Kind::TIME.signed(Sign::NonNegative)),
                 default: None,
                 about: "in which the wandering bias forgets all but 1/e of itself",
             },
