@@ -3,12 +3,15 @@
 //! No clock, no I/O, no threads. The truth is evaluated once a distinct tick; each sensor due then gets its
 //! error-free reading from it and makes its own from that. Where blocks begin changes nothing.
 
+mod feed;
+
+pub use feed::Feed;
+
 use crate::geometry::{Body, Vector};
 use crate::motion::{Trajectory, Truth};
 use crate::scene::Plan;
 use crate::schedule::{Due, Schedule, Ticks};
-use crate::sensor::block::{self, Block, Column};
-use crate::sensor::{REFERENCE_TEMPERATURE, Reading, Sampling, Sensor, SensorKind, SensorPlan};
+use crate::sensor::{Block, REFERENCE_TEMPERATURE, Reading, Sensor, SensorKind};
 use crate::time::SimTime;
 
 /// How many distinct ticks a block holds unless told otherwise.
@@ -140,10 +143,10 @@ impl<'a> Player<'a> {
 impl Channel {
     fn fill(&mut self, i: usize, due: &[Due], truth: &[Truth], trajectory: &Trajectory) {
         let mine = |due: &Due| due.sensors >> i & 1 == 1;
-        let point = self.feed.sampling == Sampling::Point;
-        if point && due.iter().all(mine) {
+        let plain = self.feed.is_plain();
+        if plain && due.iter().all(mine) {
             self.feed.extend(truth.iter(), &mut self.block);
-        } else if point {
+        } else if plain {
             let mine = due.iter().zip(truth).filter(|(due, _)| mine(due));
             self.feed.extend(mine.map(|(_, truth)| truth), &mut self.block);
         } else {
@@ -165,41 +168,6 @@ impl Channel {
             bias: at(&self.block.bias),
             clipped: self.block.clipped[i],
             temperature: self.block.temperature.get(i).copied().unwrap_or(REFERENCE_TEMPERATURE),
-        }
-    }
-}
-
-/// What a sensor is given at its ticks: its error-free reading and, where its terms need it, more of the truth.
-#[derive(Debug)]
-pub struct Feed {
-    kind: SensorKind,
-    sampling: Sampling,
-    force: bool,
-    /// The tick before, for the mean.
-    last: Option<SimTime>,
-}
-
-impl Feed {
-    /// For a plan's sensor, before its first tick.
-    pub fn new(plan: &SensorPlan, sensor: &Sensor) -> Feed {
-        Feed { kind: plan.kind, sampling: plan.sampling, force: sensor.needs(Column::Force), last: None }
-    }
-
-    /// Adds the sample at `t`, at which this is the truth.
-    pub fn push(&mut self, t: SimTime, truth: &Truth, trajectory: &Trajectory, block: &mut Block) {
-        let seen = match (self.sampling, self.last) {
-            (Sampling::Average, Some(last)) => trajectory.mean(last, t),
-            _ => *truth,
-        };
-        self.last = Some(t);
-        self.extend([&seen].into_iter(), block);
-    }
-
-    /// Adds samples that are the truth at their ticks.
-    fn extend<'t>(&self, truth: impl Iterator<Item = &'t Truth> + Clone, block: &mut Block) {
-        block::extend(&mut block.truth, truth.clone().map(|truth| sensed(self.kind, truth)));
-        if self.force {
-            block::extend(&mut block.force, truth.map(|truth| truth.force));
         }
     }
 }

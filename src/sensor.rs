@@ -10,8 +10,12 @@ mod bias_instability;
 mod bias_temperature;
 mod bias_walk;
 pub mod block;
+mod delay;
+mod filter;
+mod flicker;
 mod g_sensitivity;
 mod hard_iron;
+mod lever_arm;
 mod linear;
 mod matrix;
 pub mod mount;
@@ -24,11 +28,14 @@ mod soft_iron;
 mod strides;
 mod temperature;
 mod units;
+mod vibration;
 pub mod white_noise;
 
 pub use bias::settle as settle_bias;
 pub use bias_walk::step as bias_step;
 pub use block::{Block, Column};
+pub use delay::delay;
+pub use lever_arm::{at_arm, lever_arm};
 pub use mount::Mount;
 pub use range::limits;
 pub use resolution::lsb;
@@ -222,15 +229,20 @@ pub struct TermKind {
 }
 
 /// Every error term, in the order of the chain.
-pub static TERMS: [&TermKind; 14] = [
+pub static TERMS: [&TermKind; 19] = [
     &temperature::KIND,
+    &delay::KIND,
+    &lever_arm::KIND,
     &soft_iron::KIND,
     &hard_iron::KIND,
+    &filter::KIND,
+    &vibration::KIND,
     &matrix::KIND,
     &scale_temperature::KIND,
     &nonlinearity::KIND,
     &bias::KIND,
     &bias_instability::KIND,
+    &flicker::KIND,
     &bias_walk::KIND,
     &bias_temperature::KIND,
     &g_sensitivity::KIND,
@@ -329,6 +341,8 @@ impl Sensor {
     }
 }
 
+#[cfg(test)]
+mod dynamics_tests;
 #[cfg(test)]
 mod parts_tests;
 #[cfg(test)]

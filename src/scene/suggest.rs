@@ -48,9 +48,8 @@ pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
         "hard_iron" | "soft_iron" if path != "mag" => "is a magnetometer's",
         "g_sensitivity" if path != "gyro" => "is a gyro's",
         "lever_arm" if path != "accel" => "is an accelerometer's",
-        "filter" | "delay" | "clock_error" | "lever_arm" | "vibration" => {
-            "names an effect that this version does not model"
-        }
+        "vibration" => "is of a gyro or an accelerometer",
+        "clock_error" => "names an effect that this version does not model",
         _ => return None,
     };
     Some(answer)

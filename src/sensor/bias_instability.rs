@@ -4,7 +4,7 @@
 //! τ = `correlation_time`, started from its stationary distribution unless asked to start from zero. Its Allan
 //! deviation peaks at 0.617 σ, at 1.89 τ (IEEE Std 952-1997, annex C).
 
-use super::{Block, Stage, Term, TermKind};
+use super::{Block, Stage, Term, TermKind, flicker};
 use crate::keys::{Key, KeyError, Takes};
 use crate::quantity::{Kind, Sign};
 use crate::random::Stream;
@@ -40,6 +40,9 @@ pub(super) static KIND: TermKind = TermKind {
         ]
     },
     build: |values, context| {
+        if flicker::is_on(values) {
+            return Ok(None);
+        }
         let sigma = values.vector("bias_instability").unwrap_or_default();
         let Some(tau) = values.vector("correlation_time") else {
             return match sigma == DVec3::ZERO {

@@ -11,6 +11,10 @@ pub type Columns = [Vec<f64>; 3];
 pub enum Column {
     /// The true specific force, m/s².
     Force,
+    /// The error-free reading `delay` earlier.
+    Late,
+    /// What the sensor feels beyond the point that moves, for its lever arm.
+    LeverArm,
 }
 
 /// A run of consecutive samples of one sensor, in body axes, one column an axis.
@@ -24,8 +28,13 @@ pub struct Block {
     pub reading: Columns,
     /// Whether the reading left the range.
     pub clipped: Vec<bool>,
-    /// The true specific force, m/s²; empty unless a term needs [`Column::Force`].
+    /// The true specific force at the time of sensing, m/s²; empty unless a term needs [`Column::Force`].
     pub force: Columns,
+    /// The error-free reading `delay` earlier; empty unless a term needs [`Column::Late`].
+    pub late: Columns,
+    /// Acceleration at the lever arm beyond that of the point that moves, m/s²; empty unless a term needs
+    /// [`Column::LeverArm`].
+    pub arm: Columns,
     /// The part's temperature, °C; empty where the scene does not give it.
     pub temperature: Vec<f64>,
 }
@@ -43,7 +52,14 @@ impl Block {
 
     /// Forgets its samples and keeps its memory.
     pub fn clear(&mut self) {
-        for columns in [&mut self.truth, &mut self.bias, &mut self.reading, &mut self.force] {
+        for columns in [
+            &mut self.truth,
+            &mut self.bias,
+            &mut self.reading,
+            &mut self.force,
+            &mut self.late,
+            &mut self.arm,
+        ] {
             columns.iter_mut().for_each(Vec::clear);
         }
         self.clipped.clear();

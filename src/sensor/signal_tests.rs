@@ -9,7 +9,7 @@ use std::convert::Infallible;
 
 const G: f64 = 9.80665;
 
-fn plan(text: &str) -> Plan {
+pub(super) fn plan(text: &str) -> Plan {
     Plan::parse(text, "test", "test", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -22,11 +22,11 @@ fn one(table: &str, keys: &str, truth: [f64; 3]) -> DVec3 {
 }
 
 /// Every reading of the only sensor of a scene.
-fn played(text: &str) -> Vec<Reading> {
+pub(super) fn played(text: &str) -> Vec<Reading> {
     in_blocks(&plan(text), 256)
 }
 
-fn in_blocks(plan: &Plan, block: usize) -> Vec<Reading> {
+pub(super) fn in_blocks(plan: &Plan, block: usize) -> Vec<Reading> {
     let mut readings = Vec::new();
     let Ok(()) = Player::new(plan, plan.duration, block).play(|moment| {
         readings.extend_from_slice(moment.readings);
@@ -218,6 +218,15 @@ const ALONE: &[(&str, &str, &str)] = &[
         "[gyro]",
         "temperature = { rise = \"20 K\", time_constant = \"50 ms\" }\nbias_temperature = \"1 deg/s/K\"",
     ),
+    ("delay", "[gyro]", "delay = \"2.5 ms\""),
+    ("lever_arm", "[accel]", "lever_arm = \"[0.1, 0.2, 0.3] m\""),
+    ("filter", "[gyro]", "filter = { low_pass = \"20 Hz\", order = 2 }"),
+    (
+        "vibration",
+        "[gyro]",
+        "vibration = [{ frequency = \"33 Hz\", amplitude = \"1 rad/s\" }, { density = \"0.01 rad^2/s^2/Hz\", from = \"20 Hz\", to = \"90 Hz\" }]",
+    ),
+    ("flicker", "[gyro]", "bias_instability = \"1 deg/s\"\nflicker = true"),
     ("soft_iron", "[mag]", "soft_iron = [[1.1, 0.1, 0], [0, 1, 0], [0, 0, 1]]"),
     ("hard_iron", "[mag]", "hard_iron = \"[1, 2, 3] uT\""),
     ("matrix", "[gyro]", "scale_error = \"1 %\"\nmisalignment = \"[1, 2, 3] deg\""),
