@@ -8,7 +8,7 @@ use crate::double::Double;
 use crate::geometry::Attitude;
 use crate::quantity::{Kind, Resolution};
 use crate::time::SimTime;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -46,6 +46,27 @@ pub enum Takes {
     File,
     /// The names of columns of that file.
     Columns(Columns),
+    /// A linear map of body vectors: three rows, the three on the diagonal, or one number for these.
+    Matrix(Kind),
+    /// `true` or `false`.
+    Flag,
+    /// A whole number from the first to the second.
+    Whole(u64, u64),
+    /// Keys that belong together, in a table of their own.
+    Table(Nested),
+}
+
+/// A table within a table: `filter = { low_pass = "92 Hz", order = 2 }`.
+#[derive(Clone, Copy, Debug)]
+pub struct Nested {
+    /// Its keys.
+    pub keys: &'static [Key],
+    /// The key that a value stands for which is no table: `filter = "92 Hz"`.
+    pub alone: Option<&'static str>,
+    /// Whether there may be an array of them.
+    pub many: bool,
+    /// One as a scene writes it.
+    pub example: &'static str,
 }
 
 /// Columns that belong together, such as the three of a vector.
@@ -106,6 +127,14 @@ pub enum Value {
     File(Text),
     /// Of [`Takes::Columns`]: their names, and how many inside units one of theirs is.
     Columns(Vec<String>, f64),
+    /// Of [`Takes::Matrix`].
+    Matrix(DMat3),
+    /// Of [`Takes::Flag`].
+    Flag(bool),
+    /// Of [`Takes::Whole`].
+    Whole(u64),
+    /// Of [`Takes::Table`], in the order written.
+    Tables(Vec<Values>),
 }
 
 /// The values of one table, by key. A getter returns `None` for a key that is absent and has no default.
@@ -147,6 +176,44 @@ impl Values {
     /// Three components.
     pub fn vector(&self, key: &str) -> Option<DVec3> {
         self.triple(key).map(|t| DVec3::from_array(t.map(Double::to_f64)))
+    }
+
+    /// A linear map.
+    pub fn matrix(&self, key: &str) -> Option<DMat3> {
+        match self.0.get(key)? {
+            Value::Matrix(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// Whether a flag is set; `None` where it is not given.
+    pub fn flag(&self, key: &str) -> Option<bool> {
+        match self.0.get(key)? {
+            Value::Flag(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// A whole number.
+    pub fn whole(&self, key: &str) -> Option<u64> {
+        match self.0.get(key)? {
+            Value::Whole(value) => Some(*value),
+            other => mismatch(key, other),
+        }
+    }
+
+    /// The tables called so; none where there is no such key.
+    pub fn tables(&self, key: &str) -> &[Values] {
+        match self.0.get(key) {
+            None => &[],
+            Some(Value::Tables(tables)) => tables,
+            Some(other) => mismatch(key, other).unwrap_or_default(),
+        }
+    }
+
+    /// The first table called so.
+    pub fn table(&self, key: &str) -> Option<&Values> {
+        self.tables(key).first()
     }
 
     /// A resolution.

@@ -3,11 +3,15 @@
 //! No clock, no I/O, no threads. The truth is evaluated once a distinct tick; each sensor due then gets its
 //! error-free reading from it and makes its own from that. Where blocks begin changes nothing.
 
+mod feed;
+
+pub use feed::Feed;
+
 use crate::geometry::{Body, Vector};
 use crate::motion::{Trajectory, Truth};
 use crate::scene::Plan;
 use crate::schedule::{Due, Schedule, Ticks};
-use crate::sensor::{Block, Reading, Sampling, Sensor, SensorKind, SensorPlan};
+use crate::sensor::{Block, REFERENCE_TEMPERATURE, Reading, Sensor, SensorKind};
 use crate::time::SimTime;
 
 /// How many distinct ticks a block holds unless told otherwise.
@@ -45,13 +49,12 @@ impl Columns<'_> {
 }
 
 struct Channel {
-    plan: SensorPlan,
+    kind: SensorKind,
     sensor: Sensor,
     block: Block,
     /// Samples in earlier blocks.
     done: u64,
-    /// Of the sample before, for the mean.
-    last: Option<SimTime>,
+    feed: Feed,
 }
 
 /// Plays a plan.
@@ -75,12 +78,10 @@ impl<'a> Player<'a> {
     /// The same without the error terms called so.
     pub fn without(plan: &'a Plan, end: SimTime, block: usize, left_out: &[&str]) -> Player<'a> {
         let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
-        let channels = plan.sensors.iter().map(|sensor| Channel {
-            plan: sensor.clone(),
-            sensor: plan.build_without(sensor, left_out),
-            block: Block::default(),
-            done: 0,
-            last: None,
+        let channels = plan.sensors.iter().map(|plan_of| {
+            let sensor = plan.build_without(plan_of, left_out);
+            let feed = Feed::new(plan_of, &sensor);
+            Channel { kind: plan_of.kind, sensor, block: Block::default(), done: 0, feed }
         });
         Player {
             trajectory: &plan.trajectory,
@@ -150,22 +151,16 @@ impl<'a> Player<'a> {
 
 impl Channel {
     fn fill(&mut self, i: usize, due: &[Due], truth: &[Truth], trajectory: &Trajectory) {
-        let kind = self.plan.kind;
         let mine = |due: &Due| due.sensors >> i & 1 == 1;
-        match self.plan.sampling {
-            Sampling::Point if due.iter().all(mine) => {
-                self.block.extend(truth.iter().map(|it| sensed(kind, it)))
-            }
-            Sampling::Point => {
-                let mine = due.iter().zip(truth).filter(|(due, _)| mine(due));
-                self.block.extend(mine.map(|(_, truth)| sensed(kind, truth)));
-            }
-            Sampling::Average => {
-                for (due, truth) in due.iter().zip(truth).filter(|(due, _)| mine(due)) {
-                    let seen = self.last.map_or(*truth, |last| trajectory.mean(last, due.t));
-                    self.last = Some(due.t);
-                    self.block.extend([sensed(kind, &seen)].into_iter());
-                }
+        let plain = self.feed.is_plain();
+        if plain && due.iter().all(mine) {
+            self.feed.extend(truth.iter(), &mut self.block);
+        } else if plain {
+            let mine = due.iter().zip(truth).filter(|(due, _)| mine(due));
+            self.feed.extend(mine.map(|(_, truth)| truth), &mut self.block);
+        } else {
+            for (due, truth) in due.iter().zip(truth).filter(|(due, _)| mine(due)) {
+                self.feed.push(due.t, truth, trajectory, &mut self.block);
             }
         }
         self.sensor.read(&mut self.block);
@@ -175,12 +170,13 @@ impl Channel {
         let at = |columns: &[Vec<f64>; 3]| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
         Reading {
             sensor,
-            kind: self.plan.kind,
+            kind: self.kind,
             k: self.done + i as u64,
             value: at(&self.block.reading),
             truth: at(&self.block.truth),
             bias: at(&self.block.bias),
             clipped: self.block.clipped[i],
+            temperature: self.block.temperature.get(i).copied().unwrap_or(REFERENCE_TEMPERATURE),
         }
     }
 }

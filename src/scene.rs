@@ -14,6 +14,7 @@ mod draw;
 mod file;
 mod fixed_keys;
 mod keyframes;
+mod nested;
 mod output;
 pub mod parts;
 mod reader;

@@ -1,27 +1,49 @@
 //! What a part reads: the truth with the errors the scene switches on, and no others.
 //!
 //! Each error is a [`Term`] in a file of its own; a sensor is compiled to the list of terms its scene uses, so a
-//! term that is absent costs nothing. The chain is truth → biases → white noise → range → resolution → reading.
+//! term that is absent costs nothing. The chain is truth → what disturbs the signal → biases →
+//! white noise → range → resolution → reading.
 //! To add a term: one file beside this one and one line in [`TERMS`].
 
 mod bias;
 mod bias_instability;
+mod bias_temperature;
 mod bias_walk;
+pub mod block;
+mod delay;
+mod filter;
+mod flicker;
+mod g_sensitivity;
+mod hard_iron;
+mod lever_arm;
+mod linear;
+mod matrix;
 pub mod mount;
+mod nonlinearity;
 pub mod parts;
 mod range;
 mod resolution;
+mod scale_temperature;
+mod soft_iron;
+mod strides;
+mod temperature;
+mod units;
+mod vibration;
 pub mod white_noise;
 
 pub use bias::settle as settle_bias;
 pub use bias_walk::step as bias_step;
+pub use block::{Block, Column};
+pub use delay::delay;
+pub use lever_arm::{at_arm, lever_arm};
 pub use mount::Mount;
 pub use range::limits;
 pub use resolution::lsb;
+pub use temperature::REFERENCE as REFERENCE_TEMPERATURE;
+pub use units::Units;
 
 use crate::geometry::{Body, Vector};
 use crate::keys::{Key, KeyError, Values};
-use crate::quantity::Kind;
 use crate::random::{self, Stream};
 use crate::time::{Rate, SimTime};
 use std::fmt;
@@ -59,9 +81,9 @@ impl SensorKind {
     /// Which units this sensor's keys take.
     pub const fn units(self) -> &'static Units {
         match self {
-            SensorKind::Gyro => &GYRO_UNITS,
-            SensorKind::Accel => &ACCEL_UNITS,
-            SensorKind::Mag => &MAG_UNITS,
+            SensorKind::Gyro => &units::GYRO_UNITS,
+            SensorKind::Accel => &units::ACCEL_UNITS,
+            SensorKind::Mag => &units::MAG_UNITS,
         }
     }
 }
@@ -71,48 +93,6 @@ impl fmt::Display for SensorKind {
         f.write_str(self.name())
     }
 }
-
-/// The kinds of quantity that one sensor's keys take.
-#[derive(Debug)]
-pub struct Units {
-    /// A reading, its bias and its σ.
-    pub reading: Kind,
-    /// Its square.
-    pub variance: Kind,
-    /// A one-sided noise density.
-    pub density: Kind,
-    /// The key and kind of the random walk of the reading's integral, where the field has a name for it.
-    pub random_walk: Option<(&'static str, Kind)>,
-    /// The driving noise of a bias walk.
-    pub bias_walk: Kind,
-    /// The size of a count, counts a unit, or bits.
-    pub resolution: Kind,
-}
-
-static GYRO_UNITS: Units = Units {
-    reading: Kind::ANGULAR_RATE,
-    variance: Kind::GYRO_VARIANCE,
-    density: Kind::GYRO_DENSITY,
-    random_walk: Some(("angle_random_walk", Kind::ANGLE_RANDOM_WALK)),
-    bias_walk: Kind::GYRO_WALK,
-    resolution: Kind::GYRO_RESOLUTION,
-};
-static ACCEL_UNITS: Units = Units {
-    reading: Kind::ACCELERATION,
-    variance: Kind::ACCEL_VARIANCE,
-    density: Kind::ACCEL_DENSITY,
-    random_walk: Some(("velocity_random_walk", Kind::VELOCITY_RANDOM_WALK)),
-    bias_walk: Kind::ACCEL_WALK,
-    resolution: Kind::ACCEL_RESOLUTION,
-};
-static MAG_UNITS: Units = Units {
-    reading: Kind::FIELD,
-    variance: Kind::MAG_VARIANCE,
-    density: Kind::MAG_DENSITY,
-    random_walk: None,
-    bias_walk: Kind::MAG_WALK,
-    resolution: Kind::MAG_RESOLUTION,
-};
 
 /// How a reading samples the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -147,7 +127,14 @@ impl SensorPlan {
     /// What its error terms are built from.
     pub fn context(&self, seed: u64) -> Context {
         let mount = self.mount.unwrap_or_default();
-        Context { sensor: self.kind, rate: self.rate, mount, seed }
+        Context {
+            sensor: self.kind,
+            rate: self.rate,
+            phase: self.phase,
+            sampling: self.sampling,
+            mount,
+            seed,
+        }
     }
 }
 
@@ -168,13 +155,16 @@ pub struct Reading {
     pub bias: Vector<Body>,
     /// Whether the value left the range.
     pub clipped: bool,
+    /// The part's temperature, °C.
+    pub temperature: f64,
 }
 
 impl Reading {
     /// A reading of zero, where only its being there matters.
     pub fn zero(sensor: usize, kind: SensorKind) -> Reading {
         let zero = Vector::ZERO;
-        Reading { sensor, kind, k: 0, value: zero, truth: zero, bias: zero, clipped: false }
+        let temperature = REFERENCE_TEMPERATURE;
+        Reading { sensor, kind, k: 0, value: zero, truth: zero, bias: zero, clipped: false, temperature }
     }
 }
 
@@ -185,6 +175,10 @@ pub struct Context {
     pub sensor: SensorKind,
     /// The sensor's output data rate.
     pub rate: Rate,
+    /// When tick 0 is due.
+    pub phase: SimTime,
+    /// Point or average.
+    pub sampling: Sampling,
     /// From body to chip axes.
     pub mount: Mount,
     /// The scene's seed.
@@ -195,51 +189,6 @@ impl Context {
     /// The three streams of the term called `term`.
     pub fn streams(&self, term: &str) -> [Stream; 3] {
         random::axes(self.seed, &format!("{}/{term}", self.sensor))
-    }
-}
-
-/// A run of consecutive samples of one sensor, in body axes, one column an axis.
-#[derive(Clone, Debug, Default)]
-pub struct Block {
-    /// The error-free reading.
-    pub truth: [Vec<f64>; 3],
-    /// The bias in effect.
-    pub bias: [Vec<f64>; 3],
-    /// What the part reads.
-    pub reading: [Vec<f64>; 3],
-    /// Whether the reading left the range.
-    pub clipped: Vec<bool>,
-}
-
-impl Block {
-    /// How many samples it holds.
-    pub fn len(&self) -> usize {
-        self.truth[0].len()
-    }
-
-    /// Whether it holds none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Forgets its samples and keeps its memory.
-    pub fn clear(&mut self) {
-        self.truth.iter_mut().chain(&mut self.bias).chain(&mut self.reading).for_each(Vec::clear);
-        self.clipped.clear();
-    }
-
-    /// Adds a sample by its error-free reading.
-    pub fn push(&mut self, truth: [f64; 3]) {
-        for (column, value) in self.truth.iter_mut().zip(truth) {
-            column.push(value);
-        }
-    }
-
-    /// Adds samples by their error-free readings.
-    pub fn extend(&mut self, truth: impl Iterator<Item = Vector<Body>> + Clone) {
-        for (axis, column) in self.truth.iter_mut().enumerate() {
-            column.extend(truth.clone().map(|truth| truth.v[axis]));
-        }
     }
 }
 
@@ -257,6 +206,8 @@ pub trait Term: Send {
 /// Where in the chain a term acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
+    /// Changes the reading before there is a bias in it: what reaches the sensing element, and how it answers.
+    Signal,
     /// Adds to the bias.
     Bias,
     /// Changes the reading, bias included.
@@ -274,6 +225,8 @@ pub struct TermKind {
     pub about: &'static str,
     /// Where it acts.
     pub stage: Stage,
+    /// What it needs of the truth besides the error-free reading.
+    pub needs: &'static [Column],
     /// Its keys for a sensor.
     pub keys: fn(SensorKind) -> Vec<Key>,
     /// From values to a term.
@@ -281,10 +234,23 @@ pub struct TermKind {
 }
 
 /// Every error term, in the order of the chain.
-pub static TERMS: [&TermKind; 6] = [
+pub static TERMS: [&TermKind; 19] = [
+    &temperature::KIND,
+    &delay::KIND,
+    &lever_arm::KIND,
+    &soft_iron::KIND,
+    &hard_iron::KIND,
+    &filter::KIND,
+    &vibration::KIND,
+    &matrix::KIND,
+    &scale_temperature::KIND,
+    &nonlinearity::KIND,
     &bias::KIND,
     &bias_instability::KIND,
+    &flicker::KIND,
     &bias_walk::KIND,
+    &bias_temperature::KIND,
+    &g_sensitivity::KIND,
     &white_noise::KIND,
     &range::KIND,
     &resolution::KIND,
@@ -301,10 +267,13 @@ pub fn check(plan: &SensorPlan, seed: u64) -> Vec<KeyError> {
 }
 
 /// A sensor at work: the terms its scene uses.
+#[derive(Default)]
 pub struct Sensor {
+    signals: Vec<Box<dyn Term>>,
     biases: Vec<Box<dyn Term>>,
     readings: Vec<Box<dyn Term>>,
     names: Vec<&'static str>,
+    needs: Vec<Column>,
 }
 
 impl Sensor {
@@ -321,11 +290,13 @@ impl Sensor {
     /// # Errors
     /// As [`Sensor::new`].
     pub fn without(plan: &SensorPlan, seed: u64, left_out: &[&str]) -> Result<Sensor, KeyError> {
-        let mut sensor = Sensor { biases: Vec::new(), readings: Vec::new(), names: Vec::new() };
+        let mut sensor = Sensor::default();
         for kind in TERMS.into_iter().filter(|kind| !left_out.contains(&kind.name)) {
             if let Some(term) = (kind.build)(&plan.values, &plan.context(seed))? {
                 sensor.names.push(kind.name);
+                sensor.needs.extend(kind.needs);
                 match kind.stage {
+                    Stage::Signal => sensor.signals.push(term),
                     Stage::Bias => sensor.biases.push(term),
                     Stage::Reading => sensor.readings.push(term),
                 }
@@ -341,25 +312,38 @@ impl Sensor {
 
     /// Normal numbers that its terms draw for each sample.
     pub fn normals(&self) -> usize {
-        self.biases.iter().chain(&self.readings).map(|term| term.normals()).sum()
+        self.signals.iter().chain(&self.biases).chain(&self.readings).map(|term| term.normals()).sum()
+    }
+
+    /// Whether a term needs this of the truth.
+    pub fn needs(&self, column: Column) -> bool {
+        self.needs.contains(&column)
     }
 
     /// Fills bias, reading and clipped of a block whose truth is given; blocks come in order of time.
     pub fn read(&mut self, block: &mut Block) {
         let n = block.len();
-        for axis in 0..3 {
-            block.bias[axis].clear();
-            block.bias[axis].resize(n, 0.0);
-        }
         block.clipped.clear();
         block.clipped.resize(n, false);
+        block.temperature.clear();
+        for (reading, truth) in block.reading.iter_mut().zip(&block.truth) {
+            reading.clear();
+            reading.extend_from_slice(truth);
+        }
+        for term in &mut self.signals {
+            term.apply(block);
+        }
+        for bias in &mut block.bias {
+            bias.clear();
+            bias.resize(n, 0.0);
+        }
         for term in &mut self.biases {
             term.apply(block);
         }
-        for axis in 0..3 {
-            let sum = block.truth[axis].iter().zip(&block.bias[axis]).map(|(truth, bias)| truth + bias);
-            block.reading[axis].clear();
-            block.reading[axis].extend(sum);
+        if !self.biases.is_empty() {
+            for (reading, bias) in block.reading.iter_mut().zip(&block.bias) {
+                reading.iter_mut().zip(bias).for_each(|(reading, bias)| *reading += bias);
+            }
         }
         for term in &mut self.readings {
             term.apply(block);
@@ -368,6 +352,10 @@ impl Sensor {
 }
 
 #[cfg(test)]
+mod dynamics_tests;
+#[cfg(test)]
 mod parts_tests;
+#[cfg(test)]
+mod signal_tests;
 #[cfg(test)]
 mod tests;

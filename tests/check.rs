@@ -65,7 +65,7 @@ fn a_program_reads_each_effect_with_its_size_what_it_is_set_against_and_its_verd
     assert_eq!(bias["verdict"], "left out but would be seen", "the datasheet's tolerance: {bias}");
     let spin = effect(&plan, "accel", "lever_arm");
     assert!(
-        spin["key"].is_null()
+        spin["key"] == "accel.lever_arm"
             && spin["against"]["noise"].is_null()
             && spin["against"]["resolution"].is_null()
     );

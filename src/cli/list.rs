@@ -116,6 +116,18 @@ fn declared(key: &Key) -> String {
         Takes::Word(words) => words.join(" or "),
         Takes::Keyframes => "an array, such as [{ t = \"2 s\", attitude = \"[0, 30, 0] deg\" }]".into(),
         Takes::File => "a path, relative to the scene's folder".into(),
+        Takes::Matrix(kind) => {
+            format!(
+                "{}, one number, a vector (the diagonal) or three rows, such as \"{}\"",
+                kind.name(),
+                kind.example()
+            )
+        }
+        Takes::Flag => "true or false".into(),
+        Takes::Whole(least, most) => format!("a whole number from {least} to {most}"),
+        Takes::Table(nested) => {
+            format!("a table{}, such as {}", if nested.many { " or several" } else { "" }, nested.example)
+        }
         Takes::Columns(columns) => format!("columns, such as {}", columns.example()),
     };
     let default = key.default.map_or(String::new(), |default| format!(" (default {default})"));

@@ -2,8 +2,8 @@
 
 use super::terms::key;
 use super::{EFFECTS, Found, Survey, TICKS};
-use crate::player::sensed;
-use crate::sensor::{Block, Sampling, Sensor};
+use crate::player::Feed;
+use crate::sensor::{Block, Sensor};
 use glam::DVec3;
 
 /// Rounding and clipping would hide or enlarge a small difference.
@@ -22,7 +22,7 @@ pub(super) fn measure(survey: &Survey<'_>, term: &str) -> Option<Found> {
     let without =
         |others: &[&str]| Sensor::without(survey.sensor, survey.plan.seed, &[&LAST, others].concat());
     let (mut with, mut without) = (without(&[]).ok()?, without(&[term]).ok()?);
-    let mut block = error_free(survey);
+    let mut block = error_free(survey, &with);
     with.read(&mut block);
     let reading = block.reading.clone();
     without.read(&mut block);
@@ -38,19 +38,13 @@ pub(super) fn measure(survey: &Survey<'_>, term: &str) -> Option<Found> {
     Some(Found { key: key(survey, term), ..Found::modelled(size, statistic) })
 }
 
-/// What an error-free sensor reads at its first ticks.
-fn error_free(survey: &Survey<'_>) -> Block {
-    let (sensor, path) = (survey.sensor, survey.trajectory());
-    let mut block = Block::default();
-    let mut last = None;
+/// What the sensor is given at its first ticks.
+fn error_free(survey: &Survey<'_>, sensor: &Sensor) -> Block {
+    let (plan, path) = (survey.sensor, survey.trajectory());
+    let (mut block, mut feed) = (Block::default(), Feed::new(plan, sensor));
     for k in 0..survey.ticks.min(TICKS) {
-        let t = sensor.phase + sensor.rate.tick(k);
-        let truth = match (sensor.sampling, last) {
-            (Sampling::Average, Some(last)) => path.mean(last, t),
-            _ => path.at(t),
-        };
-        block.push(sensed(sensor.kind, &truth).v.to_array());
-        last = Some(t);
+        let t = plan.phase + plan.rate.tick(k);
+        feed.push(t, &path.at(t), path, &mut block);
     }
     block
 }

@@ -1,9 +1,8 @@
 //! Effects of what the vehicle does: what pushes it, where it goes, how its motion is sampled.
 
+use super::survey::Look;
 use super::{EffectKind, Found, Judge, Survey};
-use crate::geometry::{Body, Vector};
-use crate::sensor::{Sampling, SensorKind};
-use crate::time::SimTime;
+use crate::sensor::{Sampling, SensorKind, at_arm, lever_arm};
 use glam::DVec3;
 
 /// The scene's external forces: the largest sum of them at any tick.
@@ -73,8 +72,8 @@ fn averaging(survey: &Survey<'_>, over_seams: bool, statistic: &'static str) -> 
 }
 
 /// Lever arm: an accelerometer at `r` from the point that moves feels `dw/dt × r + w × (w × r)` more (Titterton and
-/// Weston, *Strapdown Inertial Navigation Technology*, 2nd ed., sec. 2.4). Given for 1 cm in the worst direction; a
-/// jump of the angular rate, whose derivative has no bound, is left out.
+/// Weston, *Strapdown Inertial Navigation Technology*, 2nd ed., sec. 2.4). Without one in the scene, for 1 cm in the
+/// worst direction; a jump of the angular rate, whose derivative has no bound, is left out.
 pub(super) static LEVER_ARM: EffectKind = EffectKind {
     name: "lever_arm",
     judge: Judge::Both,
@@ -82,28 +81,21 @@ pub(super) static LEVER_ARM: EffectKind = EffectKind {
         if !survey.is(SensorKind::Accel) {
             return None;
         }
+        let felt = |look: &Look, arm| {
+            at_arm(arm, look.truth.rate, survey.trajectory().angular_acceleration(look.t)).v
+        };
+        if let Some(arm) = lever_arm(&survey.sensor.values) {
+            let size = survey.largest(|look| felt(look, arm));
+            return Some(Found::modelled(size, "largest").by("accel.lever_arm"));
+        }
         let size = survey.largest(|look| {
-            let (w, turning) = (look.truth.rate.v, angular_acceleration(survey, look.t).v);
-            let felt = DVec3::AXES.map(|r| turning.cross(r) + w.cross(w.cross(r)));
-            let squares = felt.iter().fold(DVec3::ZERO, |sum, v| sum + v * v);
+            let squares = DVec3::AXES.map(|r| felt(look, r)).iter().fold(DVec3::ZERO, |sum, v| sum + v * v);
             ARM * DVec3::from_array(squares.to_array().map(libm::sqrt))
         });
-        Some(
-            Found::left_out(size, "largest, for each cm")
-                .noting("if the accelerometer sits off the point that moves"),
-        )
+        let found = Found::left_out(size, "largest, for each cm").by("accel.lever_arm");
+        Some(found.noting("if the accelerometer sits off the point that moves"))
     },
 };
 
 /// m.
 const ARM: f64 = 0.01;
-
-/// By a difference over 20 µs, rad/s²; zero next to a seam.
-fn angular_acceleration(survey: &Survey<'_>, t: SimTime) -> Vector<Body> {
-    const STEP: SimTime = SimTime(20_000);
-    if survey.edge_after(t).is_some_and(|edge| edge <= t + STEP) {
-        return Vector::ZERO;
-    }
-    let rate = |t| survey.trajectory().kinematics(t).rate;
-    (rate(t + STEP) - rate(t)) * (1.0 / STEP.seconds())
-}

@@ -101,6 +101,7 @@ fn says_something(key: &Key, values: &Values) -> bool {
         Takes::PerAxis(_) | Takes::BodyVector(_) => {
             values.vector(key.name).is_some_and(|value| value != DVec3::ZERO)
         }
+        Takes::Flag => values.flag(key.name) == Some(true),
         _ => values.has(key.name) && key.default.is_none(),
     }
 }

@@ -251,7 +251,11 @@ fn a_lever_arm_feels_centripetal_and_angular_acceleration() {
     let arm = found(&plan(&spin, &[]), "lever_arm");
     let angular = 100f64.to_radians() * std::f64::consts::TAU * 0.7;
     assert!((arm.size / (0.01 * angular) - 1.0).abs() < 1e-3, "{arm:?} at the swing's turn");
-    assert_eq!((arm.modelled, arm.key), (false, None));
+    assert_eq!((arm.modelled, arm.key.as_deref()), (false, Some("accel.lever_arm")));
+    // Given, it is as large as what it changes.
+    let with = plan(&spin, &["accel.lever_arm=[30, -20, 10] mm"]);
+    let (size, measured) = (found(&with, "lever_arm"), largest(&differences(&with, &plan(&spin, &[]))));
+    assert!((size.size - measured).abs() < 1e-12 && size.modelled && measured > 0.1, "{size:?} {measured}");
     // A steady turn: w²·r, and no angular acceleration from the jumps at its seams.
     let turn = found(&plan(PUSHED, &[]), "lever_arm");
     assert!((turn.size - 0.01 * 50f64.to_radians().powi(2)).abs() < 1e-12 && turn.axis != "z", "{turn:?}");

@@ -1,5 +1,7 @@
 //! The whole truth of a scene: segments one after another, forces over them, gravity and field.
 
+mod turning;
+
 use super::stepped::Stepped;
 use super::{Kinematics, Motion, rest};
 use crate::double::Double;

@@ -32,6 +32,11 @@ impl Kind {
         self.name
     }
 
+    /// Whether it has no sign, as the size of a noise.
+    pub const fn is_magnitude(&self) -> bool {
+        !matches!(self.sign, Sign::Any)
+    }
+
     /// A value as one would write it: `20 deg/s`.
     pub const fn example(&self) -> &'static str {
         self.example

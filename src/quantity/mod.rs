@@ -12,6 +12,7 @@
 mod exact;
 mod expression;
 mod kind;
+mod matrix;
 mod parse;
 mod table;
 mod text;

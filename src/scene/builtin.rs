@@ -1,12 +1,13 @@
 //! The scenes that come with the program.
 
 /// Name and text of each.
-pub const SCENES: [(&str, &str); 5] = [
+pub const SCENES: [(&str, &str); 6] = [
     ("table-1", include_str!("builtin/table-1.toml")),
     ("still", include_str!("builtin/still.toml")),
     ("coning", include_str!("builtin/coning.toml")),
     ("manoeuvre", include_str!("builtin/manoeuvre.toml")),
     ("mpu-9250", include_str!("builtin/mpu-9250.toml")),
+    ("full-mpu9250", include_str!("builtin/full-mpu9250.toml")),
 ];
 
 /// The text of the built-in scene of that name.

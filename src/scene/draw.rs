@@ -7,6 +7,7 @@ use crate::keys::{self, Key, Takes};
 use crate::quantity::{self, Kind, Sign};
 use crate::random::{self, Stream};
 use crate::sensor::{self, SensorPlan};
+use glam::{DMat3, DVec3};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -22,10 +23,9 @@ pub struct Drawn {
 impl Section<'_> {
     /// A value drawn once a run: `{ uniform = [low, high] }` or `{ normal = [mean, std] }`, each axis by itself.
     pub(super) fn draw(&self, key: &Key, table: &Table) -> Option<keys::Value> {
-        let (kind, scalar, magnitude) = match key.takes {
-            Takes::Scalar(kind) => (kind, true, true),
-            Takes::PerAxis(kind) => (kind, false, true),
-            Takes::BodyVector(kind) => (kind, false, false),
+        let (kind, scalar) = match key.takes {
+            Takes::Scalar(kind) => (kind, true),
+            Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Matrix(kind) => (kind, false),
             _ => {
                 self.mistake(key.name, "cannot be drawn from a distribution");
                 return None;
@@ -39,7 +39,7 @@ impl Section<'_> {
             let mut stream = random::stream(self.reader.seed.get(), &name);
             let value = shape.sample(low[axis], high[axis], &mut stream);
             // The size of a noise has no sign; the tail of a normal distribution is folded over.
-            drawn[axis] = if magnitude { value.abs() } else { value };
+            drawn[axis] = if kind.is_magnitude() { value.abs() } else { value };
         }
         let unit = kind.units()[0];
         let text =
@@ -49,9 +49,11 @@ impl Section<'_> {
             .borrow_mut()
             .push(Drawn { key: format!("{}.{}", self.path, key.name), value: text.clone() });
         self.resolve(key.name, text);
-        let sign = if magnitude { 1.0 } else { self.reader.axes.get().body_sign() };
+        let sign = self.reader.axes.get().body_sign();
         Some(match key.takes {
             Takes::Scalar(_) => keys::Value::Scalar(drawn[0].into()),
+            Takes::PerAxis(_) => keys::Value::Triple(drawn.map(Into::into)),
+            Takes::Matrix(_) => keys::Value::Matrix(DMat3::from_diagonal(DVec3::from_array(drawn))),
             _ => keys::Value::Triple([drawn[0], drawn[1] * sign, drawn[2] * sign].map(Into::into)),
         })
     }

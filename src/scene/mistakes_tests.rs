@@ -69,7 +69,7 @@ const KEYS: &[Case] = &[
     ),
     (gyro!("gyroscope_noise_density = 1e-4"), &[("4:1", "Kalibr|`angle_random_walk`")]),
     (gyro!("NoiseDensity = \"1 deg/s/√Hz\""), &[("4:1", "MATLAB|`noise_density`")]),
-    (gyro!("AxesMisalignment = 1"), &[("4:1", "does not model")]),
+    (gyro!("AxesMisalignment = 1"), &[("4:1", "`misalignment`")]),
     (gyro!("odr = \"1 kHz\""), &[("4:1", "`odr` is spelled `rate` here")]),
     (gyro!("velocity_random_walk = \"1 m/s/√h\""), &[("4:1", "a gyro has an `angle_random_walk`")]),
     (

@@ -25,6 +25,7 @@ pub fn sources(part: &Part) -> Result<Vec<Sourced>, Mistake> {
 fn source_of(kind: SensorKind, entry: &Entry) -> Result<Sourced, Mistake> {
     let text = |table: &Table, key: &str| match table.get(key).map(|entry| &entry.node.value) {
         Some(Value::Text(text)) => Some(text.clone()),
+        Some(Value::Boolean(flag)) => Some(flag.to_string()),
         Some(Value::Table(table)) => {
             table.entries.first().map(|entry| format!("{} {}", entry.key, texts(&entry.node.value)))
         }

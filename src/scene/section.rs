@@ -15,7 +15,7 @@ pub struct Section<'r> {
     pub(super) reader: &'r Reader,
     /// Such as `gyro` or `motion.2`; empty for the scene itself.
     pub(super) path: String,
-    table: Table,
+    pub(super) table: Table,
     known: RefCell<Vec<&'static str>>,
     resolved: RefCell<toml::Table>,
     /// What messages call it.
@@ -282,7 +282,7 @@ impl<'r> Section<'r> {
     }
 
     /// A text with a unit, read by `read`; a bare number is read too, for what is said of the unit it lacks.
-    fn measured<T>(
+    pub(super) fn measured<T>(
         &self,
         key: &'static str,
         default: Option<&str>,
@@ -382,6 +382,7 @@ impl<'r> Section<'r> {
     fn value(&self, key: &Key, may_draw: bool) -> Option<keys::Value> {
         if let Some(Value::Table(table)) = self.entry(key.name).map(|entry| &entry.node.value)
             && may_draw
+            && !matches!(key.takes, Takes::Table(_))
         {
             return self.draw(key, table);
         }
@@ -412,6 +413,10 @@ impl<'r> Section<'r> {
             Takes::Keyframes => keys::Value::Keyframes(self.keyframes(name)?),
             Takes::File => keys::Value::File(self.file(name)?),
             Takes::Columns(columns) => self.columns(name, &columns)?,
+            Takes::Matrix(kind) => keys::Value::Matrix(self.matrix(name, kind)?),
+            Takes::Flag => keys::Value::Flag(self.flag(name)?),
+            Takes::Whole(least, most) => keys::Value::Whole(self.whole_within(key, least, most)?),
+            Takes::Table(nested) => keys::Value::Tables(self.nested(name, &nested, may_draw)?),
         })
     }
 

@@ -41,11 +41,15 @@ pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
         "bias_stability" => "is spelled `bias_instability` here, with a `correlation_time`",
         "arw" | "ARW" => "is spelled `angle_random_walk` here",
         "vrw" | "VRW" => "is spelled `velocity_random_walk` here",
-        "AxesMisalignment" | "misalignment" | "scale_error" | "matrix" | "nonlinearity" | "g_sensitivity"
-        | "temperature" | "bias_temperature" | "scale_temperature" | "filter" | "delay" | "clock_error"
-        | "hard_iron" | "soft_iron" | "lever_arm" | "vibration" => {
-            "names an effect that this version does not model"
-        }
+        "AxesMisalignment" => "is MATLAB's name; here it is `misalignment` (angles) or `matrix` (a full 3x3)",
+        "TemperatureBias" => "is MATLAB's name; here it is `bias_temperature`",
+        "TemperatureScaleFactor" => "is MATLAB's name; here it is `scale_temperature`",
+        "AccelerationBias" => "is MATLAB's name; here it is `g_sensitivity`",
+        "hard_iron" | "soft_iron" if path != "mag" => "is a magnetometer's",
+        "g_sensitivity" if path != "gyro" => "is a gyro's",
+        "lever_arm" if path != "accel" => "is an accelerometer's",
+        "vibration" => "is of a gyro or an accelerometer",
+        "clock_error" => "names an effect that this version does not model",
         _ => return None,
     };
     Some(answer)

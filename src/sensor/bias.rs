@@ -11,6 +11,7 @@ pub(super) static KIND: TermKind = TermKind {
     name: "bias",
     about: "turn-on bias: `bias` plus `bias_std` times a normal number drawn once a run",
     stage: Stage::Bias,
+    needs: &[],
     keys: |sensor| {
         let reading = sensor.units().reading;
         vec![

@@ -4,7 +4,7 @@
 //! τ = `correlation_time`, started from its stationary distribution unless asked to start from zero. Its Allan
 //! deviation peaks at 0.617 σ, at 1.89 τ (IEEE Std 952-1997, annex C).
 
-use super::{Block, Stage, Term, TermKind};
+use super::{Block, Stage, Term, TermKind, flicker};
 use crate::keys::{Key, KeyError, Takes};
 use crate::quantity::{Kind, Sign};
 use crate::random::Stream;
@@ -15,6 +15,7 @@ pub(super) static KIND: TermKind = TermKind {
     name: "bias_instability",
     about: "the bias wanders as a first-order Gauss-Markov process",
     stage: Stage::Bias,
+    needs: &[],
     keys: |sensor| {
         let reading = sensor.units().reading;
         vec![
@@ -26,7 +27,7 @@ pub(super) static KIND: TermKind = TermKind {
             },
             Key {
                 name: "correlation_time",
-                takes: Takes::PerAxis(Kind::TIME),
+                takes: Takes::PerAxis(Kind::TIME.signed(Sign::NonNegative)),
                 default: None,
                 about: "in which the wandering bias forgets all but 1/e of itself",
             },
@@ -39,6 +40,9 @@ pub(super) static KIND: TermKind = TermKind {
         ]
     },
     build: |values, context| {
+        if flicker::is_on(values) {
+            return Ok(None);
+        }
         let sigma = values.vector("bias_instability").unwrap_or_default();
         let Some(tau) = values.vector("correlation_time") else {
             return match sigma == DVec3::ZERO {

@@ -14,6 +14,7 @@ pub(super) static KIND: TermKind = TermKind {
     name: "bias_walk",
     about: "the bias takes a normal step after each sample",
     stage: Stage::Bias,
+    needs: &[],
     keys: |sensor| {
         let units = sensor.units();
         vec![

@@ -87,6 +87,11 @@ impl Mount {
         }
     }
 
+    /// Whether each chip axis lies along one of the body's.
+    pub fn is_right_angled(self) -> bool {
+        self.right_angles().is_some()
+    }
+
     /// For a right-angle mount, which body axis each chip axis lies on, and its sign.
     fn right_angles(self) -> Option<[(usize, f64); 3]> {
         let rows = self.to_chip.transpose();

@@ -30,7 +30,7 @@ pub struct Sourced {
     pub source: String,
 }
 
-static PARTS: [Part; 2] = [
+static PARTS: [Part; 8] = [
     Part {
         names: &["MPU-6050", "MPU-6000"],
         inside: &[],
@@ -44,6 +44,48 @@ static PARTS: [Part; 2] = [
         about: "nine axes, TDK InvenSense, with AKM's AK8963 magnetometer inside",
         file: "parts/mpu-9250.toml",
         text: include_str!("parts/mpu-9250.toml"),
+    },
+    Part {
+        names: &["ICM-20948"],
+        inside: &[("AK09916", SensorKind::Mag)],
+        about: "nine axes, TDK InvenSense, with AKM's AK09916 magnetometer inside",
+        file: "parts/icm-20948.toml",
+        text: include_str!("parts/icm-20948.toml"),
+    },
+    Part {
+        names: &["ICM-42688-P"],
+        inside: &[],
+        about: "six axes, TDK InvenSense",
+        file: "parts/icm-42688-p.toml",
+        text: include_str!("parts/icm-42688-p.toml"),
+    },
+    Part {
+        names: &["BMI088"],
+        inside: &[],
+        about: "six axes for vibrating places, Bosch Sensortec",
+        file: "parts/bmi088.toml",
+        text: include_str!("parts/bmi088.toml"),
+    },
+    Part {
+        names: &["BMI270"],
+        inside: &[],
+        about: "six axes, Bosch Sensortec",
+        file: "parts/bmi270.toml",
+        text: include_str!("parts/bmi270.toml"),
+    },
+    Part {
+        names: &["LSM9DS1"],
+        inside: &[],
+        about: "nine axes, STMicroelectronics",
+        file: "parts/lsm9ds1.toml",
+        text: include_str!("parts/lsm9ds1.toml"),
+    },
+    Part {
+        names: &["ADIS16470"],
+        inside: &[],
+        about: "six axes, calibrated, Analog Devices",
+        file: "parts/adis16470.toml",
+        text: include_str!("parts/adis16470.toml"),
     },
 ];
 

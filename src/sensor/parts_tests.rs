@@ -21,8 +21,16 @@ fn every_value_of_every_part_names_its_source() {
     for part in parts::all() {
         let sourced = scene::parts::sources(part).unwrap_or_else(|mistake| panic!("{mistake}"));
         for value in &sourced {
-            let has_page = value.source.contains(" p. ") || value.source.starts_with("assumed: ");
-            assert!(has_page, "{} {}.{}: `{}`", part.file, value.sensor, value.key, value.source);
+            let places = [" p. ", " page of ", " section ", " specifications"];
+            let has_place = places.iter().any(|place| value.source.contains(place));
+            assert!(
+                has_place || value.source.starts_with("assumed: "),
+                "{} {}.{}: `{}`",
+                part.file,
+                value.sensor,
+                value.key,
+                value.source
+            );
         }
         for kind in sensors(part) {
             assert!(
@@ -59,33 +67,60 @@ fn every_part_loads_for_each_of_its_sensors_under_each_of_its_names() {
     }
 }
 
+const DPS: f64 = std::f64::consts::PI / 180.0;
+const G: f64 = 9.80665;
+const MPU_GYRO: &[(&str, f64)] = &[
+    ("250 deg/s", DPS / 131.0),
+    ("500 deg/s", DPS / 65.5),
+    ("1000 deg/s", DPS / 32.8),
+    ("2000 deg/s", DPS / 16.4),
+];
+const BOSCH_GYRO: &[(&str, f64)] = &[
+    ("125 deg/s", DPS / 262.144),
+    ("250 deg/s", DPS / 131.072),
+    ("500 deg/s", DPS / 65.536),
+    ("1000 deg/s", DPS / 32.768),
+    ("2000 deg/s", DPS / 16.384),
+];
+const ACCEL: &[(&str, f64)] =
+    &[("2 g", G / 16384.0), ("4 g", G / 8192.0), ("8 g", G / 4096.0), ("16 g", G / 2048.0)];
+/// Ranges and counts, of each part's sensors, the widest last.
+type Scales = &'static [(&'static str, f64)];
+const SCALES: &[(&str, Scales, Scales, Scales)] = &[
+    ("MPU-6050", MPU_GYRO, ACCEL, &[]),
+    ("MPU-9250", MPU_GYRO, ACCEL, &[("4912 uT", 0.15)]),
+    ("ICM-20948", MPU_GYRO, ACCEL, &[("4900 uT", 0.15)]),
+    (
+        "ICM-42688-P",
+        &[("15.625 deg/s", DPS / 2097.2), ("125 deg/s", DPS / 262.0), ("2000 deg/s", DPS / 16.4)],
+        ACCEL,
+        &[],
+    ),
+    ("BMI088", BOSCH_GYRO, &[("3 g", G / 10920.0), ("24 g", G / 1365.0)], &[]),
+    ("BMI270", BOSCH_GYRO, ACCEL, &[]),
+    (
+        "LSM9DS1",
+        &[("245 deg/s", 8.75e-3 * DPS), ("500 deg/s", 17.5e-3 * DPS), ("2000 deg/s", 70e-3 * DPS)],
+        &[("2 g", 0.061e-3 * G), ("16 g", 0.732e-3 * G)],
+        &[("4 G", 0.014), ("16 G", 0.058)],
+    ),
+    ("ADIS16470", &[("2000 deg/s", 0.1 * DPS)], &[("40 g", G / 800.0)], &[]),
+];
+
 #[test]
 fn at_every_range_a_count_is_the_datasheets() {
-    let dps = std::f64::consts::PI / 180.0;
-    let g = 9.80665;
-    let gyro = [
-        ("250 deg/s", dps / 131.0),
-        ("500 deg/s", dps / 65.5),
-        ("1000 deg/s", dps / 32.8),
-        ("2000 deg/s", dps / 16.4),
-    ];
-    let accel = [("2 g", g / 16384.0), ("4 g", g / 8192.0), ("8 g", g / 4096.0), ("16 g", g / 2048.0)];
-    let mag = [("4912 uT", 0.15)];
-    for part in parts::all() {
-        for kind in sensors(part) {
-            let scales: &[(&str, f64)] = match kind {
-                SensorKind::Gyro => &gyro,
-                SensorKind::Accel => &accel,
-                SensorKind::Mag => &mag,
-            };
-            for (range, count) in scales {
-                let plan = plan(part.names[0], kind, &format!("range = \"{range}\""), 1).unwrap();
+    assert_eq!(SCALES.len(), parts::all().len());
+    for (name, gyro, accel, mag) in SCALES {
+        for (kind, scales) in SensorKind::ALL.into_iter().zip([gyro, accel, mag]) {
+            for (range, count) in *scales {
+                let plan = plan(name, kind, &format!("range = \"{range}\""), 1).unwrap();
                 let found = lsb(&plan.sensors[0].values, kind).unwrap();
-                assert!((found / count - 1.0).abs() < 1e-15, "{} {kind} at {range}: {found}", part.names[0]);
+                assert!((found / count - 1.0).abs() < 1e-14, "{name} {kind} at {range}: {found}");
             }
-            let default = plan(part.names[0], kind, "", 1).unwrap();
+            let Some((_, widest)) = scales.last() else { continue };
+            let default = plan(name, kind, "", 1).unwrap();
             let found = lsb(&default.sensors[0].values, kind).unwrap();
-            assert!((found / scales[scales.len() - 1].1 - 1.0).abs() < 1e-15, "by default the widest");
+            assert!((found / widest - 1.0).abs() < 1e-14, "by default the widest");
         }
     }
 }
@@ -120,9 +155,56 @@ fn a_part_alone_draws_its_turn_on_bias_from_the_tolerance() {
     }
 }
 
+/// Every other value that is drawn is within its tolerance too, with either sign, and differs from axis to axis.
+#[test]
+fn a_scale_and_a_misalignment_are_drawn_from_the_tolerance_with_either_sign() {
+    for (part, kind, key, limit) in [
+        ("MPU-6050", SensorKind::Gyro, "scale_error", 0.03),
+        ("MPU-9250", SensorKind::Accel, "scale_error", 0.03),
+        ("ICM-20948", SensorKind::Accel, "scale_error", 0.005),
+        ("MPU-9250", SensorKind::Gyro, "misalignment", 0.02),
+        ("MPU-6050", SensorKind::Gyro, "nonlinearity", 0.002),
+    ] {
+        let draw =
+            |seed| plan(part, kind, "", seed).unwrap().sensors[0].values.vector(key).unwrap().to_array();
+        let runs: Vec<_> = (0..300).map(draw).collect();
+        for axis in 0..3 {
+            uniform(&runs.iter().map(|run| run[axis]).collect::<Vec<_>>(), limit * (1.0 + 1e-12));
+        }
+    }
+    let draw = |seed| {
+        plan("MPU-6050", SensorKind::Gyro, "", seed).unwrap().sensors[0].values.matrix("g_sensitivity")
+    };
+    let runs: Vec<_> = (0..300).filter_map(draw).collect();
+    let limit = 0.1 * DPS / G * (1.0 + 1e-12);
+    for axis in 0..3 {
+        uniform(&runs.iter().map(|run| run.col(axis)[axis]).collect::<Vec<_>>(), limit);
+        assert!(runs.iter().all(|run| run.col(axis)[(axis + 1) % 3] == 0.0), "along the same axis alone");
+    }
+}
+
+#[test]
+fn a_temperature_coefficient_of_a_sheet_acts_where_the_scene_gives_a_temperature() {
+    let terms = |more: &str| {
+        let plan = plan("MPU-9250", SensorKind::Gyro, more, 1).unwrap();
+        plan.build(&plan.sensors[0]).terms().to_vec()
+    };
+    assert!(!terms("").iter().any(|term| term.ends_with("temperature")));
+    assert!(terms("temperature = \"50 degC\"").contains(&"bias_temperature"));
+    assert!(terms("temperature = \"50 degC\"").contains(&"scale_temperature"));
+}
+
 #[test]
 fn the_noise_of_a_part_is_its_density_at_the_rate() {
-    for (part, density) in [("MPU-6050", 0.005), ("MPU-9250", 0.01)] {
+    for (part, density) in [
+        ("MPU-6050", 0.005),
+        ("MPU-9250", 0.01),
+        ("ICM-20948", 0.015),
+        ("ICM-42688-P", 0.0028),
+        ("BMI088", 0.014),
+        ("BMI270", 0.007),
+        ("ADIS16470", 0.008),
+    ] {
         let plan = plan(part, SensorKind::Gyro, "", 1).unwrap();
         let sigma =
             white_noise::sigma(&plan.sensors[0].values, SensorKind::Gyro, plan.sensors[0].rate).unwrap();

@@ -10,6 +10,7 @@ pub(super) static KIND: TermKind = TermKind {
     name: "range",
     about: "clips to ± the range, in chip axes, and flags the sample",
     stage: Stage::Reading,
+    needs: &[],
     keys: |sensor| {
         vec![Key {
             name: "range",

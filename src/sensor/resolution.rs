@@ -9,6 +9,7 @@ pub(super) static KIND: TermKind = TermKind {
     name: "resolution",
     about: "rounds to whole counts, in chip axes",
     stage: Stage::Reading,
+    needs: &[],
     keys: |sensor| {
         vec![Key {
             name: "resolution",

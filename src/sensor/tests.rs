@@ -4,14 +4,14 @@ use super::*;
 use crate::scene::Plan;
 
 /// The one sensor of a scene with these keys, at work; `table` is such as `[gyro]`.
-fn sensor(table: &str, rate: &str, keys: &str, seed: u64) -> Sensor {
+pub(super) fn sensor(table: &str, rate: &str, keys: &str, seed: u64) -> Sensor {
     let text = format!("seed = {seed}\nduration = \"1 s\"\n{table}\nrate = \"{rate}\"\n{keys}\n");
     let plan = Plan::parse(&text, "test", "test", &[]).unwrap_or_else(|error| panic!("{error}"));
     plan.build(&plan.sensors[0])
 }
 
 /// What a sensor makes of the same truth `n` times over.
-fn read(sensor: &mut Sensor, truth: [f64; 3], n: usize) -> Block {
+pub(super) fn read(sensor: &mut Sensor, truth: [f64; 3], n: usize) -> Block {
     let mut block = Block::default();
     (0..n).for_each(|_| block.push(truth));
     sensor.read(&mut block);
@@ -19,23 +19,23 @@ fn read(sensor: &mut Sensor, truth: [f64; 3], n: usize) -> Block {
 }
 
 /// `n` readings of zero by a gyro with these keys: its errors.
-fn gyro(rate: &str, keys: &str, n: usize) -> [Vec<f64>; 3] {
+pub(super) fn gyro(rate: &str, keys: &str, n: usize) -> [Vec<f64>; 3] {
     read(&mut sensor("[gyro]", rate, keys, 1), [0.0; 3], n).reading
 }
 
 /// The three axes, which are independent, one after another.
-fn joined(axes: &[Vec<f64>; 3]) -> Vec<f64> {
+pub(super) fn joined(axes: &[Vec<f64>; 3]) -> Vec<f64> {
     axes.concat()
 }
 
-fn variance(xs: &[f64]) -> f64 {
+pub(super) fn variance(xs: &[f64]) -> f64 {
     let mean = xs.iter().sum::<f64>() / xs.len() as f64;
     xs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (xs.len() - 1) as f64
 }
 
 /// Mean 0 and standard deviation `sigma`. Of N normal numbers the mean has σ/√N and the variance σ²·√(2/N); five
 /// of each are allowed.
-fn spread(xs: &[f64], sigma: f64) -> Result<(), String> {
+pub(super) fn spread(xs: &[f64], sigma: f64) -> Result<(), String> {
     let n = xs.len() as f64;
     let (mean, relative) = (xs.iter().sum::<f64>() / n, variance(xs) / (sigma * sigma) - 1.0);
     if mean.abs() > 5.0 * sigma / n.sqrt() {
@@ -48,13 +48,13 @@ fn spread(xs: &[f64], sigma: f64) -> Result<(), String> {
 }
 
 /// The correlation of two runs of mean 0.
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     product(a, b) / (product(a, a) * product(b, b)).sqrt()
 }
 
 /// No sample says anything of a later one: of N white numbers each autocorrelation has σ = 1/√N; four are allowed.
-fn white(xs: &[f64]) -> Result<(), String> {
+pub(super) fn white(xs: &[f64]) -> Result<(), String> {
     let bound = 4.0 / (xs.len() as f64).sqrt();
     let at = |lag| correlation(&xs[..xs.len() - lag], &xs[lag..]);
     match (1..=20).map(|lag| (lag, at(lag))).find(|(_, r)| r.abs() > bound) {
@@ -64,7 +64,7 @@ fn white(xs: &[f64]) -> Result<(), String> {
 }
 
 /// Squared Allan deviation from means of `m` samples, over the three axes, and how many differences it rests on.
-fn allan_variance(axes: &[Vec<f64>; 3], m: usize) -> (f64, usize) {
+pub(super) fn allan_variance(axes: &[Vec<f64>; 3], m: usize) -> (f64, usize) {
     let mut squares = Vec::new();
     for xs in axes {
         let means: Vec<_> = xs.chunks_exact(m).map(|chunk| chunk.iter().sum::<f64>() / m as f64).collect();
@@ -75,7 +75,7 @@ fn allan_variance(axes: &[Vec<f64>; 3], m: usize) -> (f64, usize) {
 
 /// The Allan deviation over `m` samples is `expected`. Neighbouring differences of M means correlate by −½ at most,
 /// so the variance of the estimate is at most (2 + 4·¼)/M = 3/M of its square; five sigma are allowed.
-fn allan(axes: &[Vec<f64>; 3], m: usize, expected: f64) -> Result<(), String> {
+pub(super) fn allan(axes: &[Vec<f64>; 3], m: usize, expected: f64) -> Result<(), String> {
     let (found, count) = allan_variance(axes, m);
     let relative = found / (expected * expected) - 1.0;
     let bound = 5.0 * (3.0 / count as f64).sqrt();
@@ -85,7 +85,7 @@ fn allan(axes: &[Vec<f64>; 3], m: usize, expected: f64) -> Result<(), String> {
     Ok(())
 }
 
-const DEG: f64 = std::f64::consts::PI / 180.0;
+pub(super) const DEG: f64 = std::f64::consts::PI / 180.0;
 const N: usize = 40_000;
 
 #[test]

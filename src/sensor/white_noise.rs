@@ -17,6 +17,7 @@ pub(super) static KIND: TermKind = TermKind {
     name: "white_noise",
     about: "a fresh normal number each sample",
     stage: Stage::Reading,
+    needs: &[],
     keys: |sensor| {
         let units = sensor.units();
         let mut keys = vec![

@@ -1,7 +1,7 @@
 //! `mavlink`: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second.
 //!
 //! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
-//! before. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
+//! before; the temperature of the first sensor that has one in the scene. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
 
 use super::{Encoder, EverySecond, Newest, Packet, Setup};
 use crate::sensor::{Reading, SensorKind};
@@ -32,6 +32,8 @@ pub(super) struct Mavlink {
     /// At whose ticks messages go out: the gyro's, or without one the first sensor's.
     carrier: Option<SensorKind>,
     unix_us_at_start: Option<u64>,
+    /// Whose temperature is told, where the scene gives one.
+    warm: Option<SensorKind>,
 }
 
 impl Mavlink {
@@ -42,6 +44,11 @@ impl Mavlink {
             newest: Newest::default(),
             carrier: setup.sensors.first().map(|sensor| sensor.kind),
             unix_us_at_start: setup.day.map(|day| day.unix_seconds() as u64 * 1_000_000),
+            warm: setup
+                .sensors
+                .iter()
+                .find(|sensor| sensor.values.has("temperature"))
+                .map(|sensor| sensor.kind),
         }
     }
 
@@ -80,6 +87,8 @@ impl Mavlink {
                 .map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
         };
         let fresh = (0..3).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
+        let temperature = self.warm.and_then(|kind| self.newest.values[kind as usize]);
+        let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
         Message::HilSensor(hil_sensor::Repr {
             time_usec: t.0 as u64 / 1000,
             accel: value(SensorKind::Accel, 1.0),
@@ -88,7 +97,7 @@ impl Mavlink {
             abs_pressure: 0.0,
             diff_pressure: 0.0,
             pressure_alt: 0.0,
-            temperature: 0.0,
+            temperature: temperature.map_or(0.0, |reading| reading.temperature as f32),
             fields_updated: fresh.fold(0, |mask, bits| mask | bits),
             id: 0,
         })

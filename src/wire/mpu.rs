@@ -5,14 +5,13 @@
 
 use super::{Encoder, EverySecond, Layout, Newest, Packet, Setup};
 use crate::earth::STANDARD_GRAVITY;
-use crate::sensor::{Mount, Reading, SensorKind, SensorPlan, lsb};
+use crate::sensor::{Mount, REFERENCE_TEMPERATURE, Reading, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
 use ratetable_protocols::mpu::registers::{self, Chip};
 use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
 
 /// No adjustment of the magnetometer's sensitivity.
 const ASA: u8 = 128;
-const TEMPERATURE_C: f64 = 25.0;
 /// 16-bit output, continuous measurement at 100 Hz.
 const CNTL1: u8 = 0x16;
 const IMU: u8 = 1 << SensorKind::Gyro as u8 | 1 << SensorKind::Accel as u8;
@@ -22,7 +21,7 @@ pub(super) struct Mpu {
     seconds: EverySecond,
     newest: Newest,
     config: config::Repr,
-    temperature: i16,
+    chip: Chip,
     /// Of gyro, accel and mag: from body to chip, and the unit of one count.
     scales: [(Mount, f64); 3],
     /// At whose ticks an `imu` goes out, if gyro and accel travel together.
@@ -57,7 +56,7 @@ impl Mpu {
                 cntl1: if mag.is_some() { CNTL1 } else { 0 },
                 asa: [ASA; 3],
             },
-            temperature: chip.temperature_raw(TEMPERATURE_C),
+            chip,
             scales: [
                 (mount(gyro), gyro_count),
                 (mount(accel), accel_count),
@@ -87,10 +86,16 @@ impl Mpu {
         }
     }
 
+    /// Of the die, °C: the gyro's where there is one.
+    fn temperature(&self) -> f64 {
+        let [gyro, accel, _] = &self.newest.values;
+        gyro.as_ref().or(accel.as_ref()).map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature)
+    }
+
     fn imu(&self) -> mpu::Packet {
         mpu::Packet::Imu(imu::Repr {
             accel: self.counts(SensorKind::Accel),
-            temperature: self.temperature,
+            temperature: self.chip.temperature_raw(self.temperature()),
             gyro: self.counts(SensorKind::Gyro),
         })
     }

@@ -471,3 +471,27 @@ proptest! {
         prop_assert!(packets.iter().all(|packet| !packet.bytes().is_empty() && packet.bytes().len() < MAX_PACKET));
     }
 }
+
+/// T = 25 + 20·(1 − e^(−t/τ)), in counts of an MPU-9250 and in °C.
+#[test]
+fn packets_report_the_temperature_of_a_part_that_warms_up() {
+    let warm = "temperature = { rise = \"20 K\", time_constant = \"1 s\" }";
+    let scene =
+        format!("duration = \"2 s\"\n[gyro]\nrate = \"100 Hz\"\n{warm}\n[accel]\nrate = \"100 Hz\"\n");
+    let degrees = |packet: &Packet| 45.0 - 20.0 * (-packet.due.seconds()).exp();
+    let mut told = 0;
+    for (packet, seen) in driven(&play(&plan(&scene), Protocol::Mpu, None).0) {
+        if let mpu::Packet::Imu(imu) = seen {
+            assert_eq!(f64::from(imu.temperature), ((degrees(packet) - 21.0) * 333.87).round());
+            told += 1;
+        }
+    }
+    for (packet, seen) in flown(&play(&plan(&scene), Protocol::Mavlink, None).0) {
+        if let Message::HilSensor(sensor) = seen {
+            assert!((f64::from(sensor.temperature) - degrees(packet)).abs() < 1e-5);
+            assert_eq!(sensor.fields_updated & hil_sensor::TEMPERATURE, hil_sensor::TEMPERATURE);
+            told += 1;
+        }
+    }
+    assert_eq!(told, 400);
+}

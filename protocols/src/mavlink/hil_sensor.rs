@@ -29,6 +29,9 @@ pub const MAG: u32 = 0x1C0;
 /// Bits of `fields_updated`: static pressure, pressure altitude and temperature.
 pub const PRESSURE: u32 = 0x1A00;
 
+/// Bit of `fields_updated`: temperature alone.
+pub const TEMPERATURE: u32 = 0x1000;
+
 /// Bit of `fields_updated`: dynamic pressure.
 pub const DIFF_PRESSURE: u32 = 0x400;
 

@@ -1,0 +1,38 @@
+//! Bias that changes with temperature: `b += c·(T − 25 °C)`, the first order of IEEE Std 952-1997, sec. 5.4 (its
+//! temperature sensitivity); zero for a part whose `temperature` the scene does not give.
+
+use super::{Block, REFERENCE_TEMPERATURE, Stage, Term, TermKind};
+use crate::keys::{Key, Takes};
+use glam::DVec3;
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "bias_temperature",
+    about: "bias in proportion to the temperature's difference from 25 degC",
+    stage: Stage::Bias,
+    needs: &[],
+    keys: |sensor| {
+        vec![Key {
+            name: "bias_temperature",
+            takes: Takes::BodyVector(sensor.units().per_kelvin),
+            default: Some("0"),
+            about: "bias per kelvin from 25 degC: acts where a `temperature` is given",
+        }]
+    },
+    build: |values, _| {
+        let per_kelvin = values.vector("bias_temperature").unwrap_or_default();
+        let used = per_kelvin != DVec3::ZERO && values.has("temperature");
+        Ok(used.then(|| Box::new(PerKelvin(per_kelvin)) as Box<dyn Term>))
+    },
+};
+
+struct PerKelvin(DVec3);
+
+impl Term for PerKelvin {
+    fn apply(&mut self, block: &mut Block) {
+        for (column, factor) in block.bias.iter_mut().zip(self.0.to_array()) {
+            for (bias, temperature) in column.iter_mut().zip(&block.temperature) {
+                *bias += factor * (temperature - REFERENCE_TEMPERATURE);
+            }
+        }
+    }
+}

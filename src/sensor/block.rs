@@ -1,0 +1,92 @@
+//! The samples that a sensor is given and what it makes of them, as columns.
+
+use crate::geometry::{Body, Vector};
+
+/// One column a body axis.
+pub type Columns = [Vec<f64>; 3];
+
+/// What a term may need of the truth besides the error-free reading; filled for a sensor only where one of its terms
+/// asks for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// The true specific force, m/s².
+    Force,
+    /// The error-free reading `delay` earlier.
+    Late,
+    /// What the sensor feels beyond the point that moves, for its lever arm.
+    LeverArm,
+}
+
+/// A run of consecutive samples of one sensor, in body axes, one column an axis.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// The error-free reading.
+    pub truth: Columns,
+    /// The bias in effect.
+    pub bias: Columns,
+    /// What the part reads.
+    pub reading: Columns,
+    /// Whether the reading left the range.
+    pub clipped: Vec<bool>,
+    /// The true specific force at the time of sensing, m/s²; empty unless a term needs [`Column::Force`].
+    pub force: Columns,
+    /// The error-free reading `delay` earlier; empty unless a term needs [`Column::Late`].
+    pub late: Columns,
+    /// Acceleration at the lever arm beyond that of the point that moves, m/s²; empty unless a term needs
+    /// [`Column::LeverArm`].
+    pub arm: Columns,
+    /// The part's temperature, °C; empty where the scene does not give it.
+    pub temperature: Vec<f64>,
+}
+
+impl Block {
+    /// How many samples it holds.
+    pub fn len(&self) -> usize {
+        self.truth[0].len()
+    }
+
+    /// Whether it holds none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Forgets its samples and keeps its memory.
+    pub fn clear(&mut self) {
+        for columns in [
+            &mut self.truth,
+            &mut self.bias,
+            &mut self.reading,
+            &mut self.force,
+            &mut self.late,
+            &mut self.arm,
+        ] {
+            columns.iter_mut().for_each(Vec::clear);
+        }
+        self.clipped.clear();
+        self.temperature.clear();
+    }
+
+    /// Adds a sample by its error-free reading.
+    pub fn push(&mut self, truth: [f64; 3]) {
+        push(&mut self.truth, truth);
+    }
+
+    /// Adds samples by their error-free readings.
+    pub fn extend(&mut self, truth: impl Iterator<Item = Vector<Body>> + Clone) {
+        extend(&mut self.truth, truth);
+    }
+}
+
+/// Adds one value to each of three columns.
+pub fn push(columns: &mut Columns, v: [f64; 3]) {
+    for (column, value) in columns.iter_mut().zip(v) {
+        column.push(value);
+    }
+}
+
+/// Adds vectors to three columns.
+pub fn extend(columns: &mut Columns, vectors: impl Iterator<Item = Vector<Body>> + Clone) {
+    for (axis, column) in columns.iter_mut().enumerate() {
+        column.extend(vectors.clone().map(|v| v.v[axis]));
+    }
+}

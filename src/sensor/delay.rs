@@ -1,0 +1,38 @@
+//! Transport delay: what is available at a tick was sensed `delay` earlier, exactly, whatever part of a tick that is;
+//! before the start it is what was true at the start. It concerns what is true, not the biases and the noise, whose
+//! statistics know no time.
+
+use super::{Block, Column, Stage, Term, TermKind};
+use crate::keys::{Key, Takes, Values};
+use crate::time::SimTime;
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "delay",
+    about: "what is available at a tick was sensed earlier",
+    stage: Stage::Signal,
+    needs: &[Column::Late],
+    keys: |_| {
+        vec![Key {
+            name: "delay",
+            takes: Takes::Duration,
+            default: Some("0 s"),
+            about: "between sensing and being available",
+        }]
+    },
+    build: |values, _| Ok((delay(values) > SimTime::ZERO).then(|| Box::new(Delay) as Box<dyn Term>)),
+};
+
+/// How long before its tick a sample is sensed.
+pub fn delay(values: &Values) -> SimTime {
+    values.time("delay").unwrap_or_default()
+}
+
+struct Delay;
+
+impl Term for Delay {
+    fn apply(&mut self, block: &mut Block) {
+        for (reading, late) in block.reading.iter_mut().zip(&block.late) {
+            reading.copy_from_slice(late);
+        }
+    }
+}

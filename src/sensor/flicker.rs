@@ -1,0 +1,123 @@
+//! Bias instability with a 1/f spectrum, as IEEE Std 952-1997 (annex C) has it: `S(f) = B²/(2πf)`, two-sided, whose
+//! Allan deviation is flat at √(2·ln 2/π)·B = 0.664 B, B = `bias_instability`.
+//!
+//! Over a stated band it is a sum of Gauss-Markov processes whose correlation times are two to a decade, each of
+//! variance B²·ln r/π for a ratio r of neighbours (van der Ziel 1950; Keshner, *1/f noise*, Proc. IEEE 70(3), 1982:
+//! one process a decade is within some 5 %). Below the band the spectrum is flat, above it falls as 1/f².
+
+use super::{Block, Context, Stage, Term, TermKind};
+use crate::keys::{Key, KeyError, Nested, Takes, Values};
+use crate::quantity::{Kind, Sign};
+use crate::random::Stream;
+use glam::DVec3;
+use rand_distr::{Distribution, StandardNormal};
+use std::f64::consts::{PI, TAU};
+
+const HERTZ: Takes = Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive));
+
+static BAND: [Key; 2] = [
+    Key { name: "from", takes: HERTZ, default: Some("0.0001 Hz"), about: "where the band begins" },
+    Key { name: "to", takes: HERTZ, default: Some("10 Hz"), about: "where the band ends" },
+];
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "flicker",
+    about: "the bias wanders with a 1/f spectrum",
+    stage: Stage::Bias,
+    needs: &[],
+    keys: |_| {
+        vec![
+            Key {
+                name: "flicker",
+                takes: Takes::Flag,
+                default: None,
+                about: "whether `bias_instability` is B of a 1/f spectrum, with no correlation time",
+            },
+            Key {
+                name: "flicker_band",
+                takes: Takes::Table(Nested {
+                    keys: &BAND,
+                    alone: None,
+                    many: false,
+                    example: "{ from = \"0.0001 Hz\", to = \"10 Hz\" }",
+                }),
+                default: None,
+                about: "over which the spectrum is 1/f",
+            },
+        ]
+    },
+    build: |values, context| {
+        let sigma = values.vector("bias_instability").unwrap_or_default();
+        if !is_on(values) {
+            return Ok(None);
+        }
+        if sigma == DVec3::ZERO {
+            return Err(KeyError::new(
+                "flicker",
+                "needs a `bias_instability` beside it, such as \"10 deg/h\"",
+            ));
+        }
+        let band = values.table("flicker_band");
+        let end = |key, default| band.and_then(|band| band.scalar(key)).unwrap_or(default);
+        let (from, to) = (end("from", 1e-4), end("to", 10.0));
+        if from >= to {
+            return Err(KeyError::new("flicker_band", "begins where it ends or later: `from` is below `to`"));
+        }
+        Ok(Some(Box::new(Flicker::new(sigma, from, to, context))))
+    },
+};
+
+/// Whether the bias instability is one of this kind.
+pub(super) fn is_on(values: &Values) -> bool {
+    values.flag("flicker") == Some(true)
+}
+
+/// One Gauss-Markov process on three axes.
+struct Process {
+    bias: DVec3,
+    decay: f64,
+    step: DVec3,
+    streams: [Stream; 3],
+}
+
+struct Flicker(Vec<Process>);
+
+impl Flicker {
+    fn new(b: DVec3, from: f64, to: f64, context: &Context) -> Flicker {
+        let decades = libm::log10(to / from);
+        let count = libm::ceil(2.0 * decades).max(1.0) as usize;
+        let ratio = libm::pow(to / from, 1.0 / count as f64);
+        let sigma = b * libm::sqrt(libm::log(ratio) / PI);
+        let process = |i: usize| {
+            // In the middle of its share of the band.
+            let tau = libm::pow(ratio, i as f64 + 0.5) / (TAU * to);
+            let steps = context.rate.period() / tau;
+            let mut streams = context.streams(&format!("flicker/{i}"));
+            let start = DVec3::from_array(streams.each_mut().map(|stream| StandardNormal.sample(stream)));
+            let step = sigma * libm::sqrt(-libm::expm1(-2.0 * steps));
+            Process { bias: sigma * start, decay: libm::exp(-steps), step, streams }
+        };
+        Flicker((0..count).map(process).collect())
+    }
+}
+
+impl Term for Flicker {
+    fn apply(&mut self, block: &mut Block) {
+        for process in &mut self.0 {
+            for axis in (0..3).filter(|&axis| process.step[axis] != 0.0) {
+                let (mut state, stream) = (process.bias[axis], &mut process.streams[axis]);
+                for bias in &mut block.bias[axis] {
+                    *bias += state;
+                    let n: f64 = StandardNormal.sample(stream);
+                    state = process.decay * state + process.step[axis] * n;
+                }
+                process.bias[axis] = state;
+            }
+        }
+    }
+
+    fn normals(&self) -> usize {
+        let drawn = |process: &Process| process.step.to_array().iter().filter(|&&step| step != 0.0).count();
+        self.0.iter().map(drawn).sum()
+    }
+}

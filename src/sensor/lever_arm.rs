@@ -1,0 +1,47 @@
+//! Lever arm: an accelerometer at r from the point that moves feels `dw/dt × r + w × (w × r)` more (Titterton &
+//! Weston, *Strapdown Inertial Navigation Technology*, 2nd ed., sec. 2.4). A jump of the angular rate, whose
+//! derivative has no bound, adds nothing.
+
+use super::{Block, Column, SensorKind, Stage, Term, TermKind};
+use crate::geometry::{Body, Vector};
+use crate::keys::{Key, Takes, Values};
+use crate::quantity::Kind;
+use glam::DVec3;
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "lever_arm",
+    about: "what an accelerometer off the point that moves feels more: dw/dt × r + w × (w × r)",
+    stage: Stage::Signal,
+    needs: &[Column::LeverArm],
+    keys: |sensor| match sensor {
+        SensorKind::Accel => vec![Key {
+            name: "lever_arm",
+            takes: Takes::BodyVector(Kind::LENGTH),
+            default: Some("0"),
+            about: "from the point that moves to the accelerometer",
+        }],
+        _ => vec![],
+    },
+    build: |values, _| Ok(lever_arm(values).map(|_| Box::new(LeverArm) as Box<dyn Term>)),
+};
+
+/// From the point that moves to the sensor, m, in body axes; `None` where it is at that point.
+pub fn lever_arm(values: &Values) -> Option<DVec3> {
+    values.vector("lever_arm").filter(|arm| *arm != DVec3::ZERO)
+}
+
+/// The acceleration at `arm` (m) beyond that of the point that moves, m/s², at an angular rate (rad/s) and its
+/// derivative (rad/s²).
+pub fn at_arm(arm: DVec3, rate: Vector<Body>, turning: Vector<Body>) -> Vector<Body> {
+    Vector::from_vec(turning.v.cross(arm) + rate.v.cross(rate.v.cross(arm)))
+}
+
+struct LeverArm;
+
+impl Term for LeverArm {
+    fn apply(&mut self, block: &mut Block) {
+        for (reading, arm) in block.reading.iter_mut().zip(&block.arm) {
+            reading.iter_mut().zip(arm).for_each(|(reading, felt)| *reading += felt);
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Non-linearity: how far a reading bends away from the best straight line.
+//!
+//! `reading += n·R·(4u³ − 3u)`, u = signal/R within ±1, on the chip's axes: the odd cubic whose best straight line
+//! (least greatest deviation) is the signal itself and whose greatest deviation is n of full scale R, at ±R/2 and at
+//! ±R (Chebyshev's T₃; "best-fit straight line" of datasheets, IEEE Std 528). Beyond full scale it stays n·R.
+
+use super::mount::Mount;
+use super::{Block, Stage, Term, TermKind};
+use crate::keys::{Key, KeyError, Takes};
+use crate::quantity::Kind;
+use glam::DVec3;
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "nonlinearity",
+    about: "an odd cubic deviation from the best straight line, in chip axes",
+    stage: Stage::Signal,
+    needs: &[],
+    keys: |_| {
+        vec![Key {
+            name: "nonlinearity",
+            takes: Takes::PerAxis(Kind::RATIO),
+            default: Some("0"),
+            about: "greatest deviation from the best straight line, of full scale: needs a `range`; on the chip's axes if its mount is oblique",
+        }]
+    },
+    build: |values, context| {
+        let bend = values.vector("nonlinearity").unwrap_or_default();
+        if bend == DVec3::ZERO {
+            return Ok(None);
+        }
+        let Some(range) = values.scalar("range") else {
+            let message = format!(
+                "is a part of full scale, so it needs a `range` beside it, such as range = \"{}\"",
+                context.sensor.units().reading.example()
+            );
+            return Err(KeyError::new("nonlinearity", message));
+        };
+        Ok(Some(Box::new(Bend { bend: bend * range, range, mount: context.mount })))
+    },
+};
+
+struct Bend {
+    /// The greatest deviation, in the reading's unit.
+    bend: DVec3,
+    range: f64,
+    mount: Mount,
+}
+
+impl Term for Bend {
+    fn apply(&mut self, block: &mut Block) {
+        // An odd function does not care which way a chip axis points along the body's.
+        if self.mount.is_right_angled() {
+            for (axis, column) in block.reading.iter_mut().enumerate() {
+                bend(column, self.bend[axis], self.range);
+            }
+        } else {
+            let mut axis = 0;
+            self.mount.on_chip(&mut block.reading, |column| {
+                bend(column, self.bend[axis], self.range);
+                axis += 1;
+            });
+        }
+    }
+}
+
+fn bend(column: &mut [f64], most: f64, range: f64) {
+    let (inverse, cubic, linear) = (1.0 / range, 4.0 * most, -3.0 * most);
+    for x in column {
+        let u = (*x * inverse).clamp(-1.0, 1.0);
+        *x += (cubic * (u * u) + linear) * u;
+    }
+}

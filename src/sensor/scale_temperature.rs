@@ -1,0 +1,39 @@
+//! Scale that changes with temperature: `reading *= 1 + c·(T − 25 °C)`; none for a part whose `temperature` the scene
+//! does not give (IEEE Std 952-1997, sec. 5.4: the scale factor's temperature sensitivity).
+
+use super::{Block, REFERENCE_TEMPERATURE, Stage, Term, TermKind};
+use crate::keys::{Key, Takes};
+use crate::quantity::Kind;
+use glam::DVec3;
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "scale_temperature",
+    about: "scale error in proportion to the temperature's difference from 25 degC",
+    stage: Stage::Signal,
+    needs: &[],
+    keys: |_| {
+        vec![Key {
+            name: "scale_temperature",
+            takes: Takes::PerAxis(Kind::RATIO_PER_KELVIN),
+            default: Some("0"),
+            about: "scale error per kelvin from 25 degC: acts where a `temperature` is given",
+        }]
+    },
+    build: |values, _| {
+        let per_kelvin = values.vector("scale_temperature").unwrap_or_default();
+        let used = per_kelvin != DVec3::ZERO && values.has("temperature");
+        Ok(used.then(|| Box::new(PerKelvin(per_kelvin)) as Box<dyn Term>))
+    },
+};
+
+struct PerKelvin(DVec3);
+
+impl Term for PerKelvin {
+    fn apply(&mut self, block: &mut Block) {
+        for (column, factor) in block.reading.iter_mut().zip(self.0.to_array()) {
+            for (reading, temperature) in column.iter_mut().zip(&block.temperature) {
+                *reading *= 1.0 + factor * (temperature - REFERENCE_TEMPERATURE);
+            }
+        }
+    }
+}

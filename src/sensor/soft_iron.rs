@@ -1,0 +1,35 @@
+//! Soft iron: magnetised by the field it is in, it stretches and turns that field: `reading = M·field` (Vasconcelos
+//! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
+
+use super::{Block, SensorKind, Stage, Term, TermKind, linear};
+use crate::keys::{Key, Takes};
+use crate::quantity::Kind;
+use glam::DMat3;
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "soft_iron",
+    about: "the field multiplied by a matrix, before hard iron",
+    stage: Stage::Signal,
+    needs: &[],
+    keys: |sensor| match sensor {
+        SensorKind::Mag => vec![Key {
+            name: "soft_iron",
+            takes: Takes::Matrix(Kind::RATIO),
+            default: None,
+            about: "what the field around the magnetometer is multiplied by; 1 without soft iron",
+        }],
+        _ => vec![],
+    },
+    build: |values, _| {
+        let matrix = values.matrix("soft_iron").unwrap_or_default();
+        Ok((matrix != DMat3::IDENTITY).then(|| Box::new(SoftIron(matrix)) as Box<dyn Term>))
+    },
+};
+
+struct SoftIron(DMat3);
+
+impl Term for SoftIron {
+    fn apply(&mut self, block: &mut Block) {
+        linear::transform(self.0, &mut block.reading);
+    }
+}

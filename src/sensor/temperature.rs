@@ -1,0 +1,110 @@
+//! The part's temperature: constant, or warming up by its own heat.
+//!
+//! `T(t) = ambient + rise·(1 − e^(−t/τ))` from the scene's start: the step response of one thermal mass (Newton's law
+//! of cooling). Coefficients count from 25 °C, at which datasheets hold.
+
+use super::strides::{STRIDE, strides};
+use super::{Block, Context, Stage, Term, TermKind};
+use crate::keys::{Key, KeyError, Nested, Takes};
+use crate::quantity::{Kind, Sign};
+use crate::time::{Rate, SimTime};
+
+/// Where temperature coefficients count from, and what packets report of a sensor without a temperature, °C.
+pub const REFERENCE: f64 = 25.0;
+
+static KEYS: [Key; 3] = [
+    Key {
+        name: "ambient",
+        takes: Takes::Scalar(Kind::TEMPERATURE),
+        default: Some("25 degC"),
+        about: "at the start",
+    },
+    Key {
+        name: "rise",
+        takes: Takes::Scalar(Kind::TEMPERATURE_DIFFERENCE),
+        default: Some("0 K"),
+        about: "by how much it ends up warmer",
+    },
+    Key {
+        name: "time_constant",
+        takes: Takes::Scalar(Kind::TIME.signed(Sign::Positive)),
+        default: None,
+        about: "in which all but 1/e of the rise has come",
+    },
+];
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "temperature",
+    about: "the part's temperature: what its coefficients act on and its packets report",
+    stage: Stage::Signal,
+    needs: &[],
+    keys: |_| {
+        vec![Key {
+            name: "temperature",
+            takes: Takes::Table(Nested {
+                keys: &KEYS,
+                alone: Some("ambient"),
+                many: false,
+                example: "\"35 degC\", or { ambient = \"25 degC\", rise = \"15 K\", time_constant = \"60 s\" } for one that warms up",
+            }),
+            default: None,
+            about: "the part's temperature (25 degC without it)",
+        }]
+    },
+    build: |values, context| {
+        let Some(given) = values.table("temperature") else { return Ok(None) };
+        let (ambient, rise) = (given.scalar("ambient"), given.scalar("rise"));
+        let (ambient, rise) = (ambient.unwrap_or(REFERENCE), rise.unwrap_or_default());
+        let tau = given.scalar("time_constant");
+        if rise != 0.0 && tau.is_none() {
+            let message = "a rise needs a `time_constant` beside it, such as \"60 s\"";
+            return Err(KeyError::new("temperature", message));
+        }
+        Ok(Some(Box::new(Warming::new(ambient, rise, tau.unwrap_or(1.0), context))))
+    },
+};
+
+struct Warming {
+    /// At the end.
+    warm: f64,
+    rise: f64,
+    /// 1/s.
+    rate: f64,
+    ticks: Rate,
+    phase: SimTime,
+    /// e^(−j·dt/τ).
+    decays: [f64; STRIDE],
+    k: u64,
+}
+
+impl Warming {
+    fn new(ambient: f64, rise: f64, tau: f64, context: &Context) -> Warming {
+        let step = context.rate.period() / tau;
+        Warming {
+            warm: ambient + rise,
+            rise,
+            rate: 1.0 / tau,
+            ticks: context.rate,
+            phase: context.phase,
+            decays: std::array::from_fn(|j| libm::exp(-(j as f64) * step)),
+            k: 0,
+        }
+    }
+}
+
+impl Term for Warming {
+    fn apply(&mut self, block: &mut Block) {
+        let n = block.len();
+        if self.rise == 0.0 {
+            block.temperature.resize(n, self.warm);
+        } else {
+            for stride in strides(self.k, n) {
+                let t = (self.phase + self.ticks.tick(stride.anchor)).seconds();
+                let missing = self.rise * libm::exp(-t * self.rate);
+                let decays = &self.decays[stride.offset..][..stride.samples.len()];
+                block.temperature.extend(decays.iter().map(|decay| self.warm - missing * decay));
+            }
+        }
+        self.k += n as u64;
+    }
+}

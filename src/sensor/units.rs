@@ -1,0 +1,50 @@
+//! Which units a sensor's keys take.
+
+use crate::quantity::Kind;
+
+/// The kinds of quantity that one sensor's keys take.
+#[derive(Debug)]
+pub struct Units {
+    /// A reading, its bias and its σ.
+    pub reading: Kind,
+    /// Its square.
+    pub variance: Kind,
+    /// A one-sided noise density.
+    pub density: Kind,
+    /// The key and kind of the random walk of the reading's integral, where the field has a name for it.
+    pub random_walk: Option<(&'static str, Kind)>,
+    /// The driving noise of a bias walk.
+    pub bias_walk: Kind,
+    /// The size of a count, counts a unit, or bits.
+    pub resolution: Kind,
+    /// A bias per kelvin.
+    pub per_kelvin: Kind,
+}
+
+pub(super) static GYRO_UNITS: Units = Units {
+    reading: Kind::ANGULAR_RATE,
+    variance: Kind::GYRO_VARIANCE,
+    density: Kind::GYRO_DENSITY,
+    random_walk: Some(("angle_random_walk", Kind::ANGLE_RANDOM_WALK)),
+    bias_walk: Kind::GYRO_WALK,
+    resolution: Kind::GYRO_RESOLUTION,
+    per_kelvin: Kind::GYRO_PER_KELVIN,
+};
+pub(super) static ACCEL_UNITS: Units = Units {
+    reading: Kind::ACCELERATION,
+    variance: Kind::ACCEL_VARIANCE,
+    density: Kind::ACCEL_DENSITY,
+    random_walk: Some(("velocity_random_walk", Kind::VELOCITY_RANDOM_WALK)),
+    bias_walk: Kind::ACCEL_WALK,
+    resolution: Kind::ACCEL_RESOLUTION,
+    per_kelvin: Kind::ACCEL_PER_KELVIN,
+};
+pub(super) static MAG_UNITS: Units = Units {
+    reading: Kind::FIELD,
+    variance: Kind::MAG_VARIANCE,
+    density: Kind::MAG_DENSITY,
+    random_walk: None,
+    bias_walk: Kind::MAG_WALK,
+    resolution: Kind::MAG_RESOLUTION,
+    per_kelvin: Kind::MAG_PER_KELVIN,
+};

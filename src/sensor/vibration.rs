@@ -1,0 +1,179 @@
+//! Vibration: sines that are felt beside the motion, and random vibration by its power spectral density.
+//!
+//! A sine is `A·sin(2πft + p)` at the sensor's ticks, so one above half the rate folds over, as in a part. A density S
+//! over [from, to] is 32 sines, one of random frequency and phase from each slice Δf of the band, with A = √(2·S·Δf)
+//! (Rice 1944; Shinozuka & Jan 1972): nearly normal, of variance S·(to − from), and nothing outside the band. A filter
+//! of the sensor, and the mean of `sampling = "average"`, act on each sine as in continuous time: before it folds over.
+
+use super::filter::LowPass;
+use super::strides::{STRIDE, strides};
+use super::{Block, Context, Sampling, SensorKind, Stage, Term, TermKind, delay};
+use crate::keys::{Key, KeyError, Nested, Takes, Values};
+use crate::quantity::{Kind, Sign};
+use crate::time::{Rate, SimTime};
+use glam::DVec3;
+use rand::RngExt;
+use std::f64::consts::{PI, TAU};
+
+/// Sines that a band is made of.
+const LINES: usize = 32;
+const EXAMPLE: &str = "[{ frequency = \"120 Hz\", amplitude = \"[0.2, 0.2, 1] m/s^2\" }]";
+
+const fn keys(reading: Kind, spectrum: Kind) -> [Key; 6] {
+    const HERTZ: Takes = Takes::Scalar(Kind::FREQUENCY.signed(Sign::NonNegative));
+    [
+        Key { name: "frequency", takes: HERTZ, default: None, about: "of a sine" },
+        Key { name: "amplitude", takes: Takes::BodyVector(reading), default: None, about: "of the sine" },
+        Key {
+            name: "phase",
+            takes: Takes::PerAxis(Kind::ANGLE),
+            default: Some("0"),
+            about: "of the sine at t = 0",
+        },
+        Key {
+            name: "density",
+            takes: Takes::PerAxis(spectrum),
+            default: None,
+            about: "of random vibration, one-sided",
+        },
+        Key { name: "from", takes: HERTZ, default: None, about: "where its band begins" },
+        Key { name: "to", takes: HERTZ, default: None, about: "where its band ends" },
+    ]
+}
+
+static GYRO: [Key; 6] = keys(Kind::ANGULAR_RATE, Kind::GYRO_SPECTRUM);
+static ACCEL: [Key; 6] = keys(Kind::ACCELERATION, Kind::ACCEL_SPECTRUM);
+
+pub(super) static KIND: TermKind = TermKind {
+    name: "vibration",
+    about: "sines felt beside the motion, or random ones by their spectrum",
+    stage: Stage::Signal,
+    needs: &[],
+    keys: |sensor| {
+        let keys = match sensor {
+            SensorKind::Gyro => &GYRO,
+            SensorKind::Accel => &ACCEL,
+            SensorKind::Mag => return vec![],
+        };
+        vec![Key {
+            name: "vibration",
+            takes: Takes::Table(Nested { keys, alone: None, many: true, example: EXAMPLE }),
+            default: None,
+            about: "each a sine (`frequency`, `amplitude`, `phase`), or random (`density` over `from` to `to`)",
+        }]
+    },
+    build: |values, context| {
+        let mut sines = Vec::new();
+        for (i, given) in values.tables("vibration").iter().enumerate() {
+            match (given.scalar("frequency"), given.vector("amplitude"), given.vector("density")) {
+                (Some(hz), Some(amplitude), None) => {
+                    sines.push(Sine { hz, amplitude, phase: given.vector("phase").unwrap_or_default() });
+                }
+                (None, None, Some(density)) => sines.extend(random(given, density, i, context)?),
+                _ => {
+                    let message = format!(
+                        "an entry has a `frequency` and an `amplitude`, or a `density` with `from` and `to`: {EXAMPLE}"
+                    );
+                    return Err(KeyError::new("vibration", message));
+                }
+            }
+        }
+        let (filter, late) = (LowPass::of(values), delay(values));
+        let felt: Vec<_> = sines.iter().map(|sine| Felt::new(sine, filter, late, context)).collect();
+        Ok((!felt.is_empty()).then(|| {
+            Box::new(Vibration { felt, rate: context.rate, phase: context.phase, k: 0 }) as Box<dyn Term>
+        }))
+    },
+};
+
+/// `amplitude·sin(2π·hz·t + phase)`.
+struct Sine {
+    hz: f64,
+    amplitude: DVec3,
+    phase: DVec3,
+}
+
+/// A band of constant density as sines.
+fn random(given: &Values, density: DVec3, i: usize, context: &Context) -> Result<Vec<Sine>, KeyError> {
+    let band = given.scalar("from").zip(given.scalar("to")).filter(|(from, to)| from < to);
+    let Some((from, to)) = band else {
+        return Err(KeyError::new(
+            "vibration",
+            "a `density` needs its band, `from` below `to`, such as from = \"20 Hz\", to = \"200 Hz\"",
+        ));
+    };
+    let mut streams = context.streams(&format!("vibration/{i}"));
+    let slice = (to - from) / LINES as f64;
+    let amplitude = DVec3::from_array((2.0 * slice * density).to_array().map(libm::sqrt));
+    Ok((0..LINES)
+        .map(|line| {
+            let hz = from + slice * (line as f64 + streams[0].random::<f64>());
+            let phase = DVec3::from_array(streams.each_mut().map(|stream| TAU * stream.random::<f64>()));
+            Sine { hz, amplitude, phase }
+        })
+        .collect())
+}
+
+/// A sine as the sensor feels it.
+struct Felt {
+    hz: f64,
+    amplitude: [f64; 3],
+    phase: [f64; 3],
+    /// sin and cos of what j ticks turn it by.
+    sines: [f64; STRIDE],
+    cosines: [f64; STRIDE],
+}
+
+impl Felt {
+    fn new(sine: &Sine, filter: Option<LowPass>, late: SimTime, context: &Context) -> Felt {
+        let (hz, half) = (sine.hz, PI * sine.hz * context.rate.period());
+        let (mut gain, mut shift) = filter.map_or((1.0, 0.0), |filter| filter.response(hz));
+        if context.sampling == Sampling::Average && half > 0.0 {
+            (gain, shift) = (gain * libm::sin(half) / half, shift - half);
+        }
+        shift -= TAU * turns(hz, late.seconds());
+        let angle = |j: usize| TAU * turns(hz, j as f64 * context.rate.period());
+        Felt {
+            hz,
+            amplitude: (sine.amplitude * gain).to_array(),
+            phase: (sine.phase + shift).to_array(),
+            sines: std::array::from_fn(|j| libm::sin(angle(j))),
+            cosines: std::array::from_fn(|j| libm::cos(angle(j))),
+        }
+    }
+}
+
+/// The part of a turn that a frequency makes in a time.
+fn turns(hz: f64, seconds: f64) -> f64 {
+    let turns = hz * seconds;
+    turns - turns.floor()
+}
+
+struct Vibration {
+    felt: Vec<Felt>,
+    rate: Rate,
+    phase: SimTime,
+    k: u64,
+}
+
+impl Term for Vibration {
+    fn apply(&mut self, block: &mut Block) {
+        for stride in strides(self.k, block.len()) {
+            let t = (self.phase + self.rate.tick(stride.anchor)).seconds();
+            let within = stride.offset..stride.offset + stride.samples.len();
+            for felt in &self.felt {
+                let angle = TAU * turns(felt.hz, t);
+                let (sines, cosines) = (&felt.sines[within.clone()], &felt.cosines[within.clone()]);
+                for axis in (0..3).filter(|&axis| felt.amplitude[axis] != 0.0) {
+                    let (amplitude, start) = (felt.amplitude[axis], angle + felt.phase[axis]);
+                    let (sine, cosine) = (amplitude * libm::sin(start), amplitude * libm::cos(start));
+                    let column = &mut block.reading[axis][stride.samples.clone()];
+                    for ((reading, s), c) in column.iter_mut().zip(sines).zip(cosines) {
+                        *reading += sine * c + cosine * s;
+                    }
+                }
+            }
+        }
+        self.k += block.len() as u64;
+    }
+}
