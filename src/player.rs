@@ -71,10 +71,10 @@ impl<'a> Player<'a> {
     /// Plays `plan` from 0 up to, not including, `end`; after the scene's motions the vehicle holds.
     /// `block` is how many distinct ticks are computed at a time (at least 1).
     pub fn new(plan: &'a Plan, end: SimTime, block: usize) -> Player<'a> {
-        let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
+        let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
         let channels = plan.sensors.iter().map(|plan_of| {
             let sensor = plan.build(plan_of);
-            let feed = Feed::new(plan_of, &sensor);
+            let feed = Feed::new(plan_of, plan.seed, &sensor);
             Channel { kind: plan_of.kind, sensor, block: Block::default(), done: 0, feed }
         });
         Player {
