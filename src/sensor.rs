@@ -38,6 +38,7 @@ pub use block::{Block, Column};
 pub use clock_error::{clock, jitter};
 pub use delay::delay;
 pub use lever_arm::{at_arm, lever_arm};
+pub use matrix::matrix;
 pub use mount::Mount;
 pub use range::limits;
 pub use resolution::lsb;
