@@ -88,10 +88,14 @@ pub struct EffectKind {
 }
 
 /// Every effect, in the order of the table: error terms in that of their chain, what moves, the Earth.
-pub static EFFECTS: [&EffectKind; 19] = [
+pub static EFFECTS: [&EffectKind; 23] = [
+    &terms::HARD_IRON,
+    &terms::MATRIX,
+    &terms::NONLINEARITY,
     &terms::BIAS,
     &terms::BIAS_INSTABILITY,
     &terms::BIAS_WALK,
+    &terms::G_SENSITIVITY,
     &terms::WHITE_NOISE,
     &terms::RANGE,
     &terms::RESOLUTION,

@@ -77,10 +77,10 @@ impl<'a> Player<'a> {
 
     /// The same without the error terms called so.
     pub fn without(plan: &'a Plan, end: SimTime, block: usize, left_out: &[&str]) -> Player<'a> {
-        let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
+        let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
         let channels = plan.sensors.iter().map(|plan_of| {
             let sensor = plan.build_without(plan_of, left_out);
-            let feed = Feed::new(plan_of, &sensor);
+            let feed = Feed::new(plan_of, plan.seed, &sensor);
             Channel { kind: plan_of.kind, sensor, block: Block::default(), done: 0, feed }
         });
         Player {

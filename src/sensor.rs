@@ -10,6 +10,7 @@ mod bias_instability;
 mod bias_temperature;
 mod bias_walk;
 pub mod block;
+mod clock_error;
 mod delay;
 mod filter;
 mod flicker;
@@ -34,8 +35,10 @@ pub mod white_noise;
 pub use bias::settle as settle_bias;
 pub use bias_walk::step as bias_step;
 pub use block::{Block, Column};
+pub use clock_error::{clock, jitter};
 pub use delay::delay;
 pub use lever_arm::{at_arm, lever_arm};
+pub use matrix::matrix;
 pub use mount::Mount;
 pub use range::limits;
 pub use resolution::lsb;
@@ -124,12 +127,18 @@ pub struct SensorPlan {
 }
 
 impl SensorPlan {
+    /// Its rate as its own oscillator has it: what its ticks follow.
+    pub fn clock(&self) -> Rate {
+        clock(&self.values, self.rate).unwrap_or(self.rate)
+    }
+
     /// What its error terms are built from.
     pub fn context(&self, seed: u64) -> Context {
         let mount = self.mount.unwrap_or_default();
         Context {
             sensor: self.kind,
             rate: self.rate,
+            clock: self.clock(),
             phase: self.phase,
             sampling: self.sampling,
             mount,
@@ -173,8 +182,10 @@ impl Reading {
 pub struct Context {
     /// Whose term it is.
     pub sensor: SensorKind,
-    /// The sensor's output data rate.
+    /// The sensor's output data rate, of which its statistics are.
     pub rate: Rate,
+    /// The rate as its own oscillator has it, which its ticks follow.
+    pub clock: Rate,
     /// When tick 0 is due.
     pub phase: SimTime,
     /// Point or average.
@@ -234,8 +245,9 @@ pub struct TermKind {
 }
 
 /// Every error term, in the order of the chain.
-pub static TERMS: [&TermKind; 19] = [
+pub static TERMS: [&TermKind; 20] = [
     &temperature::KIND,
+    &clock_error::KIND,
     &delay::KIND,
     &lever_arm::KIND,
     &soft_iron::KIND,

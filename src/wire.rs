@@ -173,7 +173,7 @@ pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
     const MANY_DIGITS: Vector<Body> =
         Vector::new(-0.012_345_678_901_234_568, -0.012_345_678_901_234_568, -0.012_345_678_901_234_568);
     let seconds = 10;
-    let ticks = setup.sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase });
+    let ticks = setup.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
     let mut encoder = encoder(protocol, setup);
     let (mut packets, mut bytes, mut count) = (Vec::new(), 0, 0);
     let mut readings = Vec::new();

@@ -104,7 +104,7 @@ fn a_person_reads_the_same_grouped_by_sensor_with_the_rule_beneath() {
         "gyro: the value at the tick, within ±2000 deg/s, mounted flu",
         "accel: the mean since the tick before, from 0.002 s on",
         "consider gyro.bias; the datasheet of the MPU-9250 gives it",
-        "this version does not model it",
+        "consider accel.lever_arm",
         "gyro: half a count is 0.03049 deg/s, a tenth of the noise 0.01 deg/s",
         "accel: neither noise nor resolution: an ideal sensor shows everything",
         "at least half a count and a tenth of one sample's white noise",

@@ -62,7 +62,7 @@ struct Results {
 }
 
 /// The scene whose cost is studied where none is given.
-const COST_SCENE: &str = "mpu-9250";
+const COST_SCENE: &str = "full-mpu9250";
 
 pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let (what, scene) = asked(arguments)?;

@@ -134,7 +134,7 @@ fn sensors(plan: &Plan, end: SimTime, clipped: &[u64]) -> Vec<SensorEntry> {
         sampling: sampling_name(sensor.sampling),
         mount: sensor.mount.map(|mount| mount.to_string()),
         terms: plan.build(sensor).terms().to_vec(),
-        samples: sensor.rate.ticks_before(sensor.phase, end),
+        samples: sensor.clock().ticks_before(sensor.phase, end),
         clipped,
     };
     plan.sensors.iter().zip(clipped).map(entry).collect()

@@ -3,8 +3,48 @@
 use super::{EffectKind, Found, Judge, Survey};
 use crate::geometry::Vector;
 use crate::keys::{Key, Takes, Values};
-use crate::sensor::{TERMS, bias_step, limits, lsb, white_noise};
-use glam::DVec3;
+use crate::sensor::{TERMS, bias_step, limits, lsb, matrix, white_noise};
+use glam::{DMat3, DVec3};
+
+/// Hard iron: its own size.
+pub(super) static HARD_IRON: EffectKind = EffectKind {
+    name: "hard_iron",
+    judge: Judge::Both,
+    find: |survey| used(survey, "hard_iron", survey.sensor.values.vector("hard_iron")?.abs(), "constant"),
+};
+
+/// Scale error, misalignment and cross-coupling, M together: `(M − 1)·signal`, where that is largest.
+pub(super) static MATRIX: EffectKind = EffectKind {
+    name: "matrix",
+    judge: Judge::Both,
+    find: |survey| {
+        let off = matrix(&survey.sensor.values) - DMat3::IDENTITY;
+        let size = survey.largest(|look| off * survey.error_free(look).v);
+        used(survey, "matrix", size, "largest")
+    },
+};
+
+/// Non-linearity: its greatest deviation, at half of full scale and at full scale.
+pub(super) static NONLINEARITY: EffectKind = EffectKind {
+    name: "nonlinearity",
+    judge: Judge::Both,
+    find: |survey| {
+        let values = &survey.sensor.values;
+        let size = values.vector("nonlinearity")?.abs() * values.scalar("range")?;
+        used(survey, "nonlinearity", size, "at most, at half and at full scale")
+    },
+};
+
+/// g-sensitivity G of a gyroscope: `G·f`, f the true specific force, where that is largest.
+pub(super) static G_SENSITIVITY: EffectKind = EffectKind {
+    name: "g_sensitivity",
+    judge: Judge::Both,
+    find: |survey| {
+        let matrix = survey.sensor.values.matrix("g_sensitivity")?;
+        let size = survey.largest(|look| matrix * look.truth.force.v);
+        used(survey, "g_sensitivity", size, "largest")
+    },
+};
 
 /// Turn-on bias: its own size.
 pub(super) static BIAS: EffectKind = EffectKind {

@@ -406,3 +406,49 @@ fn a_term_without_an_entry_is_measured_by_leaving_it_out() {
     assert_eq!(measured("resolution").size, DVec3::ZERO, "rounding is left out of both");
     assert!(measured::others(&survey).is_empty(), "each term of today has an entry");
 }
+
+/// Each as large as what it changes, and as the datasheet has it where the scene calibrates it away.
+#[test]
+fn scale_iron_bends_and_g_are_as_large_as_what_they_change() {
+    for (sensor, set, name) in [
+        ("gyro", "gyro.scale_error=[1, -2, 0.5] %", "matrix"),
+        ("gyro", "gyro.misalignment=[1, -2, 3] deg", "matrix"),
+        ("accel", "accel.matrix=[1.01, 0.98, 1]", "matrix"),
+        ("mag", "mag.hard_iron=[3, -5, 1] uT", "hard_iron"),
+        ("gyro", "gyro.g_sensitivity=[0.1, 0.2, 0.05] deg/s/g", "g_sensitivity"),
+    ] {
+        let text = ROCK.replace("gyro", sensor).replace("\"roll\"", "\"pitch\"");
+        let with = plan(&text, &[set]);
+        let effect = found(&with, name);
+        let differences = differences(&with, &plan(&text, &[]));
+        let axis = ["x", "y", "z"].iter().position(|axis| *axis == effect.axis).unwrap();
+        let measured = differences.iter().fold(0f64, |most, v| most.max(v[axis].abs()));
+        assert!(
+            (effect.size / measured - 1.0).abs() < 1e-9 && effect.modelled,
+            "{set}: {effect:?} {measured}"
+        );
+        assert_eq!(effect.key.as_deref(), set.split_once('=').map(|(key, _)| key), "{set}");
+    }
+    // 200 deg/s of full scale, of which the swing of 100 deg/s is half.
+    let text = ["gyro.nonlinearity=0.5 %", "gyro.range=200 deg/s"];
+    let with = plan(ROCK, &text);
+    let (bent, measured) =
+        (found(&with, "nonlinearity"), largest(&differences(&with, &plan(ROCK, &text[1..]))));
+    assert!(
+        (bent.size.to_degrees() - 1.0).abs() < 1e-12 && (measured / bent.size - 1.0).abs() < 1e-6,
+        "{bent:?}"
+    );
+
+    let calibrated = plan(
+        GYRO,
+        &[
+            r#"gyro.part="MPU-6050""#,
+            "gyro.scale_error=0 %",
+            "gyro.misalignment=0 deg",
+            "gyro.g_sensitivity=0 deg/s/g",
+        ],
+    );
+    let missing = found(&calibrated, "g_sensitivity");
+    assert!((missing.size.to_degrees() - 0.1).abs() < 1e-3, "the sheet's 0.1 deg/s of 1 g: {missing:?}");
+    assert_eq!((missing.verdict, missing.key.as_deref()), (Verdict::Missing, Some("gyro.g_sensitivity")));
+}

@@ -3,36 +3,37 @@
 use super::sensed;
 use crate::geometry::{Body, Vector};
 use crate::motion::{Trajectory, Truth};
+use crate::random::Stream;
 use crate::sensor::block::{self, Block, Column};
-use crate::sensor::{Sampling, Sensor, SensorKind, SensorPlan, at_arm, delay, lever_arm};
+use crate::sensor::{Sampling, Sensor, SensorKind, SensorPlan, at_arm, delay, jitter, lever_arm};
 use crate::time::SimTime;
 use glam::DVec3;
+use rand_distr::{Distribution, StandardNormal};
 
 /// Fills a sensor's blocks from the truth, in order of time.
 #[derive(Debug)]
 pub struct Feed {
     kind: SensorKind,
     sampling: Sampling,
-    /// How long before its tick a sample is sensed.
-    delay: SimTime,
+    sensing: Sensing,
     force: bool,
     arm: Option<DVec3>,
-    /// The tick before, for the mean.
-    last: Option<SimTime>,
+    /// The tick before and when it was sensed, for the mean.
+    last: Option<[SimTime; 2]>,
 }
 
 impl Feed {
-    /// For a plan's sensor, before its first tick.
-    pub fn new(plan: &SensorPlan, sensor: &Sensor) -> Feed {
+    /// For a plan's sensor, before its first tick; `seed` is the scene's.
+    pub fn new(plan: &SensorPlan, seed: u64, sensor: &Sensor) -> Feed {
         let arm = lever_arm(&plan.values).filter(|_| sensor.needs(Column::LeverArm));
-        let delay = if sensor.needs(Column::Late) { delay(&plan.values) } else { SimTime::ZERO };
+        let sensing = if sensor.needs(Column::Late) { Sensing::of(plan, seed) } else { Sensing::default() };
         let force = sensor.needs(Column::Force);
-        Feed { kind: plan.kind, sampling: plan.sampling, delay, force, arm, last: None }
+        Feed { kind: plan.kind, sampling: plan.sampling, sensing, force, arm, last: None }
     }
 
     /// Whether a sample follows from the truth at its tick alone, so that [`Feed::extend`] will do.
     pub(super) fn is_plain(&self) -> bool {
-        self.sampling == Sampling::Point && self.delay == SimTime::ZERO && self.arm.is_none()
+        self.sampling == Sampling::Point && self.sensing.is_at_ticks() && self.arm.is_none()
     }
 
     /// Adds samples that are the truth at their ticks.
@@ -45,14 +46,14 @@ impl Feed {
 
     /// Adds the sample at `t`, at which this is the truth.
     pub fn push(&mut self, t: SimTime, truth: &Truth, path: &Trajectory, block: &mut Block) {
-        let last = self.last.replace(t).filter(|_| self.sampling == Sampling::Average);
-        let seen = last.map_or(*truth, |last| path.mean(last, t));
+        let at = self.sensing.time(t);
+        let last = self.last.replace([t, at]).filter(|_| self.sampling == Sampling::Average);
+        let seen = last.map_or(*truth, |[last, _]| path.mean(last, t));
         block.push(sensed(self.kind, &seen).v.to_array());
-        let earlier = |t: SimTime| (t - self.delay).max(SimTime::ZERO);
-        let late = if self.delay == SimTime::ZERO {
+        let late = if self.sensing.is_at_ticks() {
             seen
         } else {
-            let late = last.map_or_else(|| path.at(earlier(t)), |last| path.mean(earlier(last), earlier(t)));
+            let late = last.map_or_else(|| path.at(at), |[_, last]| path.mean(last, at));
             block::push(&mut block.late, sensed(self.kind, &late).v.to_array());
             late
         };
@@ -62,10 +63,39 @@ impl Feed {
         if let Some(arm) = self.arm {
             let felt = |t| at_arm(arm, path.kinematics(t).rate, path.angular_acceleration(t));
             let felt: Vector<Body> = match last {
-                Some(last) => path.mean_of(earlier(last), earlier(t), felt),
-                None => felt(earlier(t)),
+                Some([_, last]) => path.mean_of(last, at, felt),
+                None => felt(at),
             };
             block::push(&mut block.arm, felt.v.to_array());
         }
+    }
+}
+
+/// When samples are sensed, which a delay and a clock's jitter put off their ticks.
+#[derive(Debug, Default)]
+struct Sensing {
+    delay: SimTime,
+    /// Standard deviation and bound of the jitter, ns, and where it comes from.
+    jitter: Option<(f64, f64, Stream)>,
+}
+
+impl Sensing {
+    fn of(plan: &SensorPlan, seed: u64) -> Sensing {
+        let [stream, ..] = plan.context(seed).streams("clock_error");
+        let (sigma, bound) = (jitter(&plan.values) * 1e9, 0.4e9 * plan.clock().period());
+        Sensing { delay: delay(&plan.values), jitter: (sigma > 0.0).then_some((sigma, bound, stream)) }
+    }
+
+    fn is_at_ticks(&self) -> bool {
+        self.delay == SimTime::ZERO && self.jitter.is_none()
+    }
+
+    /// When the sample of the next tick, at `t`, is sensed: never before the start.
+    fn time(&mut self, t: SimTime) -> SimTime {
+        let off = self.jitter.as_mut().map_or(0, |(sigma, bound, stream)| {
+            let n: f64 = StandardNormal.sample(stream);
+            libm::round((*sigma * n).clamp(-*bound, *bound)) as i64
+        });
+        SimTime((t - self.delay).0.saturating_add(off)).max(SimTime::ZERO)
     }
 }

@@ -15,7 +15,9 @@ pub fn sources(part: &Part) -> Result<Vec<Sourced>, Mistake> {
         let Some(Value::Table(preset)) = table.get(kind.name()).map(|entry| &entry.node.value) else {
             continue;
         };
-        for entry in preset.entries.iter().filter(|entry| entry.key != "scales") {
+        for entry in
+            preset.entries.iter().filter(|entry| !["scales", "filters"].contains(&entry.key.as_str()))
+        {
             sourced.push(source_of(kind, entry)?);
         }
     }

@@ -109,6 +109,13 @@ impl<'r> Section<'r> {
         self.table.entries.extend(entries);
     }
 
+    /// Puts another value in the place of a key's.
+    pub fn replace(&mut self, key: &str, node: &Node) {
+        for entry in self.table.entries.iter_mut().filter(|entry| entry.key == key) {
+            entry.node = node.clone();
+        }
+    }
+
     /// Whether the table has the key, without making it a known one.
     pub fn has_quietly(&self, key: &str) -> bool {
         self.table.get(key).is_some()

@@ -124,7 +124,42 @@ fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'static str> {
     };
     let fill = fill(section, kind, preset, table.get("mount"));
     section.add(fill);
+    named_filter(section, preset);
     Some(part.names[0])
+}
+
+/// `filter = "DLPF 2"`: a setting of the part by its name, in its place the filter and the delay that it has.
+fn named_filter(section: &mut Section<'_>, preset: &Table) {
+    let Some(Value::Array(filters)) = preset.get("filters").map(|entry| &entry.node.value) else { return };
+    let Some(Value::Text(wanted)) = section.entry("filter").map(|entry| entry.node.value.clone()) else {
+        return;
+    };
+    if wanted.starts_with(|first: char| first.is_ascii_digit()) {
+        return;
+    }
+    let setting = |node: &Node| match &node.value {
+        Value::Table(table) => {
+            let Value::Text(name) = &table.get("name")?.node.value else { return None };
+            Some((name.clone(), table.get("low_pass")?.node.clone(), table.get("delay").cloned()))
+        }
+        _ => None,
+    };
+    let settings: Vec<_> = filters.iter().filter_map(setting).collect();
+    let found = settings.iter().find(|(name, ..)| name.eq_ignore_ascii_case(wanted.trim()));
+    if found.is_none() {
+        let names: Vec<_> = settings.iter().map(|(name, ..)| name.as_str()).collect();
+        let names = names.join(", ");
+        section.mistake(
+            "filter",
+            format!("`{wanted}` is no setting of the part: choose one of {names}, or give a cut-off"),
+        );
+    }
+    // A name that is wrong has been told: what is read in its place does not matter.
+    let Some((_, low_pass, delay)) = found.or(settings.first()) else { return };
+    section.replace("filter", low_pass);
+    if !section.has_quietly("delay") {
+        section.add(delay.clone().into_iter().collect());
+    }
 }
 
 /// The preset's entries that the user's table leaves open.

@@ -49,7 +49,6 @@ pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
         "g_sensitivity" if path != "gyro" => "is a gyro's",
         "lever_arm" if path != "accel" => "is an accelerometer's",
         "vibration" => "is of a gyro or an accelerometer",
-        "clock_error" => "names an effect that this version does not model",
         _ => return None,
     };
     Some(answer)

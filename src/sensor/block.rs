@@ -11,7 +11,7 @@ pub type Columns = [Vec<f64>; 3];
 pub enum Column {
     /// The true specific force, m/s².
     Force,
-    /// The error-free reading `delay` earlier.
+    /// The error-free reading at the time of sensing, where that is not the tick.
     Late,
     /// What the sensor feels beyond the point that moves, for its lever arm.
     LeverArm,
@@ -30,7 +30,7 @@ pub struct Block {
     pub clipped: Vec<bool>,
     /// The true specific force at the time of sensing, m/s²; empty unless a term needs [`Column::Force`].
     pub force: Columns,
-    /// The error-free reading `delay` earlier; empty unless a term needs [`Column::Late`].
+    /// The error-free reading at the time of sensing; empty unless a term needs [`Column::Late`].
     pub late: Columns,
     /// Acceleration at the lever arm beyond that of the point that moves, m/s²; empty unless a term needs
     /// [`Column::LeverArm`].
@@ -64,6 +64,13 @@ impl Block {
         }
         self.clipped.clear();
         self.temperature.clear();
+    }
+
+    /// Reads what was true at the time of sensing.
+    pub fn sense_late(&mut self) {
+        for (reading, late) in self.reading.iter_mut().zip(&self.late) {
+            reading.copy_from_slice(late);
+        }
     }
 
     /// Adds a sample by its error-free reading.

@@ -31,8 +31,6 @@ struct Delay;
 
 impl Term for Delay {
     fn apply(&mut self, block: &mut Block) {
-        for (reading, late) in block.reading.iter_mut().zip(&block.late) {
-            reading.copy_from_slice(late);
-        }
+        block.sense_late();
     }
 }

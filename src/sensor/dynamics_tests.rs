@@ -310,3 +310,51 @@ fn a_term_that_is_not_used_has_nothing_filled_for_it() {
     assert!([&block.force, &block.late, &block.arm].iter().all(|columns| columns.iter().all(Vec::is_empty)));
     assert_eq!(in_blocks(&plan, 7), in_blocks(&plan, 64));
 }
+
+/// Tick k of a clock that is fast by e is due at k/(rate·(1 + e)), and what is read there is true there.
+#[test]
+fn a_fast_clock_ticks_early_and_reads_what_is_true_then() {
+    for (offset, e) in [("50 ppm", 50e-6), ("-0.3 %", -0.003), ("0 ppm", 0.0)] {
+        let text = format!("{CONE}[gyro]\nrate = \"400/3 Hz\"\nphase = \"1 ms\"\nclock_error = \"{offset}\"");
+        let plan = plan(&text);
+        let mut ticks = Vec::new();
+        let Ok(()) = crate::player::Player::new(&plan, SimTime(3_000_000_000), 64).play(|moment| {
+            assert_eq!(moment.readings[0].value, plan.trajectory.at(moment.t).rate);
+            ticks.push(moment.t.0);
+            Ok::<(), std::convert::Infallible>(())
+        });
+        for (k, t) in ticks.iter().enumerate() {
+            let due = 1e6 + k as f64 * 1e9 / (400.0 / 3.0 * (1.0 + e));
+            assert!((*t as f64 - due).abs() < 0.6, "{offset}: tick {k} at {t}, not {due}");
+        }
+        let more = (ticks.len() as f64 - 400.0 * (1.0 + e)).abs();
+        assert!(more < 1.0, "{offset}: {} ticks", ticks.len());
+    }
+    let error =
+        Plan::parse("duration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\nclock_error = \"20 %\"", "s", "s", &[]);
+    assert!(error.unwrap_err().to_string().contains("within ±10 %"));
+}
+
+/// A jitter σ in time is an error of σ times how fast the signal changes.
+#[test]
+fn a_jittering_clock_errs_by_its_jitter_times_the_signals_slope() {
+    let scene = |seed: u64, more: &str| {
+        let rock =
+            "[[motion]]\nkind = \"rock\"\namplitude = \"1 rad/s\"\nfrequency = \"2 Hz\"\nduration = \"20 s\"";
+        played(&format!("seed = {seed}\n{rock}\n[gyro]\nrate = \"1 kHz\"\n{more}"))
+    };
+    let errors = |readings: &[Reading]| -> Vec<f64> {
+        let slope = |k: usize| TAU * 2.0 * (TAU * 2.0 * k as f64 / 1000.0).cos();
+        let steep = (1..readings.len()).filter(|&k| slope(k).abs() > 6.0);
+        steep.map(|k| (readings[k].value - readings[k].truth).v.x / slope(k)).collect()
+    };
+    let jitter = errors(&scene(1, "clock_error = { jitter = \"20 us\" }"));
+    spread(&jitter, 20e-6).unwrap();
+    assert!(spread(&jitter, 21.5e-6).is_err(), "7 % more");
+    assert!(errors(&scene(1, "")).iter().all(|error| *error == 0.0));
+    let noisy = errors(&scene(1, "clock_error = { jitter = \"20 us\" }\nnoise_std = \"1e-9 rad/s\""));
+    assert!(
+        noisy.iter().zip(&jitter).all(|(a, b)| (a - b).abs() < 1e-8),
+        "the same jitter beside another term"
+    );
+}

@@ -49,8 +49,8 @@ pub(super) static KIND: TermKind = TermKind {
     },
 };
 
-/// All of them in one.
-fn matrix(values: &Values) -> DMat3 {
+/// What scale error, misalignment and cross-coupling multiply a signal by, in body axes.
+pub fn matrix(values: &Values) -> DMat3 {
     let scale = DVec3::ONE + values.vector("scale_error").unwrap_or_default();
     let turned = DMat3::from_quat(geometry::exp(-values.vector("misalignment").unwrap_or_default()));
     values.matrix("matrix").unwrap_or_default() * DMat3::from_diagonal(scale) * turned

@@ -224,3 +224,39 @@ fn a_part_inside_another_is_known_for_its_own_sensor_alone() {
         }
     }
 }
+
+/// Bandwidth and delay of each DLPF_CFG: RM-MPU-9250A r1.4 p. 13, RM-MPU-6000A r4.2 p. 13.
+#[test]
+fn a_named_filter_has_the_bandwidth_and_the_delay_of_the_register_map() {
+    for (part, kind, settings) in [
+        (
+            "MPU-9250",
+            SensorKind::Gyro,
+            [(250.0, 0.97), (184.0, 2.9), (92.0, 3.9), (41.0, 5.9), (20.0, 9.9), (10.0, 17.85), (5.0, 33.48)],
+        ),
+        (
+            "MPU-6050",
+            SensorKind::Accel,
+            [(260.0, 0.0), (184.0, 2.0), (94.0, 3.0), (44.0, 4.9), (21.0, 8.5), (10.0, 13.8), (5.0, 19.0)],
+        ),
+    ] {
+        for (i, (hz, ms)) in settings.into_iter().enumerate() {
+            let plan = plan(part, kind, &format!("filter = \"dlpf {i}\""), 1).unwrap();
+            let values = &plan.sensors[0].values;
+            let low_pass = values.table("filter").and_then(|filter| filter.scalar("low_pass")).unwrap();
+            assert_eq!(low_pass, hz, "{part} {i}");
+            let own = 1e3 / (std::f64::consts::TAU * hz);
+            let total = delay(values).seconds() * 1e3 + own;
+            assert!((total - f64::max(ms, own)).abs() < 0.006, "{part} {i}: {total} ms");
+            let terms = plan.build(&plan.sensors[0]).terms().to_vec();
+            assert!(terms.contains(&"filter"), "{terms:?}");
+        }
+    }
+    let mine = plan("MPU-9250", SensorKind::Gyro, "filter = \"DLPF 3\"\ndelay = \"1 ms\"", 1).unwrap();
+    assert_eq!(delay(&mine.sensors[0].values), SimTime(1_000_000), "one's own delay wins");
+    let cut_off = plan("MPU-9250", SensorKind::Gyro, "filter = \"33 Hz\"", 1).unwrap();
+    assert_eq!(delay(&cut_off.sensors[0].values), SimTime::ZERO);
+    let error = plan("MPU-9250", SensorKind::Gyro, "filter = \"DLPF 9\"", 1).unwrap_err();
+    assert!(error.contains("`DLPF 9` is no setting of the part: choose one of DLPF 0, "), "{error}");
+    assert_eq!(error.lines().count(), 1, "said once: {error}");
+}

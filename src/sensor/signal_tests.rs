@@ -218,6 +218,7 @@ const ALONE: &[(&str, &str, &str)] = &[
         "[gyro]",
         "temperature = { rise = \"20 K\", time_constant = \"50 ms\" }\nbias_temperature = \"1 deg/s/K\"",
     ),
+    ("clock_error", "[gyro]", "clock_error = { offset = \"300 ppm\", jitter = \"50 us\" }"),
     ("delay", "[gyro]", "delay = \"2.5 ms\""),
     ("lever_arm", "[accel]", "lever_arm = \"[0.1, 0.2, 0.3] m\""),
     ("filter", "[gyro]", "filter = { low_pass = \"20 Hz\", order = 2 }"),

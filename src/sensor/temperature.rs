@@ -79,12 +79,12 @@ struct Warming {
 
 impl Warming {
     fn new(ambient: f64, rise: f64, tau: f64, context: &Context) -> Warming {
-        let step = context.rate.period() / tau;
+        let step = context.clock.period() / tau;
         Warming {
             warm: ambient + rise,
             rise,
             rate: 1.0 / tau,
-            ticks: context.rate,
+            ticks: context.clock,
             phase: context.phase,
             decays: std::array::from_fn(|j| libm::exp(-(j as f64) * step)),
             k: 0,

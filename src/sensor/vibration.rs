@@ -81,7 +81,7 @@ pub(super) static KIND: TermKind = TermKind {
         let (filter, late) = (LowPass::of(values), delay(values));
         let felt: Vec<_> = sines.iter().map(|sine| Felt::new(sine, filter, late, context)).collect();
         Ok((!felt.is_empty()).then(|| {
-            Box::new(Vibration { felt, rate: context.rate, phase: context.phase, k: 0 }) as Box<dyn Term>
+            Box::new(Vibration { felt, clock: context.clock, phase: context.phase, k: 0 }) as Box<dyn Term>
         }))
     },
 };
@@ -126,13 +126,13 @@ struct Felt {
 
 impl Felt {
     fn new(sine: &Sine, filter: Option<LowPass>, late: SimTime, context: &Context) -> Felt {
-        let (hz, half) = (sine.hz, PI * sine.hz * context.rate.period());
+        let (hz, half) = (sine.hz, PI * sine.hz * context.clock.period());
         let (mut gain, mut shift) = filter.map_or((1.0, 0.0), |filter| filter.response(hz));
         if context.sampling == Sampling::Average && half > 0.0 {
             (gain, shift) = (gain * libm::sin(half) / half, shift - half);
         }
         shift -= TAU * turns(hz, late.seconds());
-        let angle = |j: usize| TAU * turns(hz, j as f64 * context.rate.period());
+        let angle = |j: usize| TAU * turns(hz, j as f64 * context.clock.period());
         Felt {
             hz,
             amplitude: (sine.amplitude * gain).to_array(),
@@ -151,7 +151,7 @@ fn turns(hz: f64, seconds: f64) -> f64 {
 
 struct Vibration {
     felt: Vec<Felt>,
-    rate: Rate,
+    clock: Rate,
     phase: SimTime,
     k: u64,
 }
@@ -159,7 +159,7 @@ struct Vibration {
 impl Term for Vibration {
     fn apply(&mut self, block: &mut Block) {
         for stride in strides(self.k, block.len()) {
-            let t = (self.phase + self.rate.tick(stride.anchor)).seconds();
+            let t = (self.phase + self.clock.tick(stride.anchor)).seconds();
             let within = stride.offset..stride.offset + stride.samples.len();
             for felt in &self.felt {
                 let angle = TAU * turns(felt.hz, t);

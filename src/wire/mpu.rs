@@ -164,7 +164,7 @@ fn scale(sensor: Option<&SensorPlan>, count: impl Fn(u8) -> f64) -> (u8, f64) {
 /// At whose ticks gyro and accel travel together: asked for, or of themselves when they tick alike.
 fn burst(setup: &Setup<'_>, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -> Option<SensorKind> {
     let (gyro, accel) = (gyro?, accel?);
-    let alike = gyro.rate == accel.rate && gyro.phase == accel.phase;
+    let alike = gyro.clock() == accel.clock() && gyro.phase == accel.phase;
     let together = setup.options.layout.map_or(alike, |layout| layout == Layout::Burst);
     let faster = if accel.rate.as_hz() > gyro.rate.as_hz() { SensorKind::Accel } else { SensorKind::Gyro };
     together.then_some(faster)

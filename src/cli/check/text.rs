@@ -106,6 +106,9 @@ fn manner(sensor: &SensorPlan) -> String {
     if sensor.phase > SimTime::ZERO {
         text += &format!(", from {} on", sensor.phase);
     }
+    if sensor.clock() != sensor.rate {
+        text += &format!(", by a clock that makes {} Hz of {}", sensor.clock().as_hz(), sensor.rate);
+    }
     if let Some(range) = sensor.values.scalar("range") {
         text += &format!(", within ±{} {unit}", number(range * scale));
     }
