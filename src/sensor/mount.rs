@@ -66,23 +66,16 @@ impl Mount {
         Vector::from_vec(self.to_chip.transpose() * v.v)
     }
 
-    /// Changes columns of body components on the chip's axes: `change` gets one column a chip axis.
-    pub(super) fn on_chip(self, columns: &mut [Vec<f64>; 3], mut change: impl FnMut(&mut [f64])) {
+    /// Changes columns of body components on the chip's axes: `change` gets one column a chip axis, and −1.0 where the
+    /// column is the chip's times that, which spares turning it over and back.
+    pub(super) fn on_chip(self, columns: &mut [Vec<f64>; 3], mut change: impl FnMut(&mut [f64], f64)) {
         if let Some(axes) = self.right_angles() {
             for (body, sign) in axes {
-                let column = &mut columns[body][..];
-                let turn = |column: &mut [f64]| column.iter_mut().for_each(|x| *x *= sign);
-                if sign < 0.0 {
-                    turn(column);
-                }
-                change(column);
-                if sign < 0.0 {
-                    turn(column);
-                }
+                change(&mut columns[body], sign);
             }
         } else {
             turn(self.to_chip, columns);
-            columns.iter_mut().for_each(|column| change(column));
+            columns.iter_mut().for_each(|column| change(column, 1.0));
             turn(self.to_chip.transpose(), columns);
         }
     }

@@ -55,7 +55,7 @@ impl Term for Bend {
             }
         } else {
             let mut axis = 0;
-            self.mount.on_chip(&mut block.reading, |column| {
+            self.mount.on_chip(&mut block.reading, |column, _| {
                 bend(column, self.bend[axis], self.range);
                 axis += 1;
             });

@@ -46,9 +46,9 @@ struct Clip {
 
 impl Term for Clip {
     fn apply(&mut self, block: &mut Block) {
-        let (low, high) = (self.low, self.high);
         let clipped = &mut block.clipped;
-        self.mount.on_chip(&mut block.reading, |column| {
+        self.mount.on_chip(&mut block.reading, |column, sign| {
+            let (low, high) = if sign < 0.0 { (-self.high, -self.low) } else { (self.low, self.high) };
             // Almost always nothing is beyond, and that is seen without a branch a sample.
             if column.iter().fold(false, |beyond, &x| beyond | (x < low) | (x > high)) {
                 for (x, clipped) in column.iter_mut().zip(&mut *clipped) {

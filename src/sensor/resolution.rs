@@ -79,7 +79,8 @@ struct Quantise {
 impl Term for Quantise {
     fn apply(&mut self, block: &mut Block) {
         let (lsb, per_unit) = (self.lsb, 1.0 / self.lsb);
-        self.mount.on_chip(&mut block.reading, |column| {
+        // Rounding treats both signs alike.
+        self.mount.on_chip(&mut block.reading, |column, _| {
             let beyond = |beyond: bool, x: &f64| beyond | (x.abs() >= SMALL * lsb);
             if column.iter().fold(false, beyond) {
                 column.iter_mut().for_each(|x| *x = libm::round(*x * per_unit) * lsb);
