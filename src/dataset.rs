@@ -20,15 +20,22 @@ mod figures;
 mod folder;
 mod format;
 mod manifest;
+mod mat;
+#[cfg(feature = "mcap")]
+mod mcap;
+mod npy;
+#[cfg(feature = "parquet")]
+mod parquet;
 pub mod read;
 mod readme;
 mod reference;
 mod table;
+mod tum;
 
 pub use error::DatasetError;
 pub use figures::{Figure, Series, figures};
 pub use folder::{Folder, Sink};
-pub use format::{FORMATS, Format, Open, Writer};
+pub use format::{FEATURES, FORMATS, Format, Open, Writer, Written};
 pub use manifest::FileEntry;
 pub use reference::{Errors, Quality};
 pub use table::{Column, Table};
@@ -70,7 +77,7 @@ pub struct Summary {
     pub folder: PathBuf,
     /// Its files of numbers, with rows, columns and checksums.
     pub files: Vec<FileEntry>,
-    /// Rows in all files together.
+    /// Rows in all tables together, whatever the number of formats.
     pub rows: u64,
     /// Samples beyond their sensor's range, in the plan's order of sensors.
     pub clipped: Vec<u64>,
@@ -117,7 +124,7 @@ fn write_in_blocks(
     let settled = reference::settled(plan, end)?;
     let folder = Folder::open(dir, options.force)?;
     let tables = table::of(plan, !options.estimates.is_empty());
-    let mut book = Book::open(&tables, &folder, &options.formats)?;
+    let mut book = Book::open(plan, &tables, &folder, &options.formats)?;
     let clipped = play(plan, end, block, &mut book, options.progress, options.stop)?;
     let quality = reference::write(plan, settled.as_ref(), end, |step| {
         book.row(table::TRUTH + 1 + plan.sensors.len(), step.t, &table::reference(plan.axes, step.attitude))
@@ -125,6 +132,7 @@ fn write_in_blocks(
     for (t, attitude) in options.estimates {
         book.row(tables.len() - 1, *t, &table::quaternion(plan.axes, *attitude))?;
     }
+    let rows = book.rows.iter().sum();
     let files = book.close(&folder)?;
 
     let readme = readme::text(plan, &files, quality.as_ref());
@@ -141,7 +149,7 @@ fn write_in_blocks(
         manifest::Made { files: &files, others: &others, clipped: &clipped, quality: quality.as_ref() };
     folder.put("manifest.json", manifest::text(plan, end, &made, &folder)?.as_bytes())?;
     folder.commit()?;
-    let rows = files.iter().map(|file| file.rows).sum();
+
     Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })
 }
 
@@ -156,7 +164,7 @@ fn play(
     plan: &Plan,
     end: SimTime,
     block: usize,
-    book: &mut Book<'_>,
+    book: &mut Book,
     progress: &mut dyn FnMut(SimTime),
     stop: Option<&AtomicBool>,
 ) -> Result<Vec<u64>, DatasetError> {
@@ -184,20 +192,20 @@ fn play(
 }
 
 /// The tables being written, in every format asked for.
-struct Book<'a> {
-    tables: &'a [Table],
+struct Book {
     rows: Vec<u64>,
     writers: Vec<(&'static Format, Box<dyn Writer>)>,
 }
 
-impl<'a> Book<'a> {
+impl Book {
     fn open(
-        tables: &'a [Table],
+        plan: &Plan,
+        tables: &[Table],
         folder: &Folder,
         formats: &[&'static Format],
-    ) -> Result<Book<'a>, DatasetError> {
-        let writers = formats.iter().map(|format| Ok((*format, (format.open)(tables, folder)?)));
-        Ok(Book { tables, rows: vec![0; tables.len()], writers: writers.collect::<Result<_, _>>()? })
+    ) -> Result<Book, DatasetError> {
+        let writers = formats.iter().map(|format| Ok((*format, (format.open)(plan, tables, folder)?)));
+        Ok(Book { rows: vec![0; tables.len()], writers: writers.collect::<Result<_, _>>()? })
     }
 
     fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError> {
@@ -208,9 +216,8 @@ impl<'a> Book<'a> {
     fn close(self, folder: &Folder) -> Result<Vec<FileEntry>, DatasetError> {
         let mut files = Vec::new();
         for (format, writer) in self.writers {
-            for (name, table) in writer.finish()? {
-                let columns = self.tables[table].columns.clone();
-                files.push(FileEntry::of(folder, name, format.name, self.rows[table], columns)?);
+            for written in writer.finish(&self.rows)? {
+                files.push(FileEntry::of(folder, written, format.name)?);
             }
         }
         Ok(files)

@@ -2,7 +2,7 @@
 
 use super::progress::Bar;
 use super::{Refusal, Verdict};
-use crate::dataset::{self, FORMATS, Figure, Format, Options, Summary};
+use crate::dataset::{self, FEATURES, FORMATS, Figure, Format, Options, Summary};
 use crate::report::Report;
 use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
 use crate::scene::{Plan, nearest};
@@ -33,6 +33,11 @@ pub struct Arguments {
 
 fn format(name: &str) -> Result<&'static Format, String> {
     Format::from_name(name).ok_or_else(|| {
+        if FEATURES.contains(&name) {
+            return format!(
+                "`{name}` is not in this build: it brings heavy crates, so build with `--features {name}`"
+            );
+        }
         let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
         let near =
             nearest(name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));

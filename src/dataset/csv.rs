@@ -2,27 +2,28 @@
 
 use super::error::DatasetError;
 use super::folder::{Folder, Sink};
-use super::format::{Format, Writer};
-use super::table::Table;
+use super::format::{Format, Writer, Written, plain};
+use super::table::{Column, Table};
+use crate::scene::Plan;
 use crate::time::SimTime;
 use std::io::Write;
 
 pub(super) static FORMAT: Format = Format { name: "csv", about: "one text file a table", open };
 
-fn open(tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer>, DatasetError> {
+fn open(_: &Plan, tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer>, DatasetError> {
     let mut files = Vec::with_capacity(tables.len());
     for table in tables {
         let name = format!("{}.csv", table.name);
         let mut sink = folder.file(&name)?;
         let header: Vec<_> = table.columns.iter().map(|column| column.name.as_str()).collect();
         sink.put(format!("{}\n", header.join(",")).as_bytes())?;
-        files.push((name, sink));
+        files.push((name, sink, table.columns.clone()));
     }
     Ok(Box::new(Csv { files, line: Vec::with_capacity(512), digits: ryu::Buffer::new() }))
 }
 
 struct Csv {
-    files: Vec<(String, Sink)>,
+    files: Vec<(String, Sink, Vec<Column>)>,
     line: Vec<u8>,
     digits: ryu::Buffer,
 }
@@ -40,15 +41,17 @@ impl Writer for Csv {
         self.files[table].1.put(&self.line)
     }
 
-    fn finish(self: Box<Self>) -> Result<Vec<(String, usize)>, DatasetError> {
-        let close = |(table, (name, sink)): (usize, (String, Sink))| sink.close().map(|()| (name, table));
-        self.files.into_iter().enumerate().map(close).collect()
+    fn finish(self: Box<Self>, rows: &[u64]) -> Result<Vec<Written>, DatasetError> {
+        let files = self.files.into_iter().zip(rows);
+        files
+            .map(|((name, sink, columns), &rows)| sink.close().map(|()| Written { name, rows, columns }))
+            .collect()
     }
 }
 
 /// The shortest decimal of these bits; a whole number has no point, and −0 is 0.
-fn shortest(value: f64, digits: &mut ryu::Buffer) -> &str {
-    let text = digits.format(value + 0.0);
+pub(super) fn shortest(value: f64, digits: &mut ryu::Buffer) -> &str {
+    let text = digits.format(plain(value));
     text.strip_suffix(".0").unwrap_or(text)
 }
 

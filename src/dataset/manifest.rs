@@ -2,6 +2,7 @@
 
 use super::error::DatasetError;
 use super::folder::Folder;
+use super::format::Written;
 use super::readme;
 use super::reference::Quality;
 use super::table::Column;
@@ -22,9 +23,9 @@ pub struct FileEntry {
     pub name: String,
     /// The name of its format.
     pub format: &'static str,
-    /// Rows, the header not counted.
+    /// Rows, the header not counted; messages, where it has those.
     pub rows: u64,
-    /// Its columns in order.
+    /// Its columns in order; none where the format has something else.
     pub columns: Vec<Column>,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
@@ -33,11 +34,10 @@ pub struct FileEntry {
 impl FileEntry {
     pub(super) fn of(
         folder: &Folder,
-        name: String,
+        written: Written,
         format: &'static str,
-        rows: u64,
-        columns: Vec<Column>,
     ) -> Result<FileEntry, DatasetError> {
+        let Written { name, rows, columns } = written;
         let sha256 = checksum(&folder.path(&name))?;
         Ok(FileEntry { name, format, rows, columns, sha256 })
     }
