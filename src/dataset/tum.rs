@@ -3,7 +3,7 @@
 //! One file for each table that holds attitudes; the sensors' tables have no place in it. Format: J. Sturm et al.,
 //! "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012, and the file formats page of its dataset.
 
-use super::csv::shortest;
+use super::csv::{Digits, shortest};
 use super::error::DatasetError;
 use super::folder::{Folder, Sink};
 use super::format::{Format, Writer, Written};
@@ -29,14 +29,14 @@ fn open(_: &Plan, tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer>, 
     };
     let files = tables.iter().map(|table| has_attitude(table).then(|| open(table)).transpose());
     let files = files.collect::<Result<_, _>>()?;
-    Ok(Box::new(Tum { files, line: Vec::with_capacity(128), digits: ryu::Buffer::new() }))
+    Ok(Box::new(Tum { files, line: Vec::with_capacity(128), digits: Digits::new() }))
 }
 
 struct Tum {
     /// Of each table, if it has a file.
     files: Vec<Option<(String, Sink)>>,
     line: Vec<u8>,
-    digits: ryu::Buffer,
+    digits: Digits,
 }
 
 impl Writer for Tum {
