@@ -12,7 +12,8 @@
 //! ```
 //!
 //! Everything is in the scene's axes. The folder appears under its name only when it is complete. A format is a
-//! [`Format`]: to add one, write one file beside this one and one line in [`FORMATS`].
+//! [`Format`]: to add one, write one file beside this one and one line in [`FORMATS`]. Of many runs of one scene each
+//! has such a folder: [`write_runs`].
 
 mod csv;
 mod error;
@@ -29,6 +30,7 @@ mod parquet;
 pub mod read;
 mod readme;
 mod reference;
+mod runs;
 mod table;
 mod tum;
 
@@ -38,6 +40,7 @@ pub use folder::{Folder, Sink};
 pub use format::{FEATURES, FORMATS, Format, Open, Writer, Written};
 pub use manifest::FileEntry;
 pub use reference::{Errors, Quality};
+pub use runs::{Made, Run, RunOptions, Shard, write_runs};
 pub use table::{Column, Table};
 
 use crate::geometry::Attitude;
@@ -61,12 +64,22 @@ pub struct Options<'a> {
     pub progress: &'a mut dyn FnMut(SimTime),
     /// Once true, writing stops with [`DatasetError::Stopped`] and leaves nothing behind.
     pub stop: Option<&'a AtomicBool>,
+    /// Which of the scene's runs it is, where there are several; the manifest says so.
+    pub run: Option<&'a Run>,
 }
 
 impl<'a> Options<'a> {
     /// CSV, nothing replaced, no estimates, no further files.
     pub fn new(progress: &'a mut dyn FnMut(SimTime)) -> Options<'a> {
-        Options { force: false, formats: vec![FORMATS[0]], estimates: &[], extra: &[], progress, stop: None }
+        Options {
+            force: false,
+            formats: vec![FORMATS[0]],
+            estimates: &[],
+            extra: &[],
+            progress,
+            stop: None,
+            run: None,
+        }
     }
 }
 
@@ -145,8 +158,13 @@ fn write_in_blocks(
         folder.put(name, contents)?;
     }
     let others: Vec<_> = others.into_iter().map(|(name, _)| name).collect();
-    let made =
-        manifest::Made { files: &files, others: &others, clipped: &clipped, quality: quality.as_ref() };
+    let made = manifest::Made {
+        files: &files,
+        others: &others,
+        clipped: &clipped,
+        quality: quality.as_ref(),
+        run: options.run,
+    };
     folder.put("manifest.json", manifest::text(plan, end, &made, &folder)?.as_bytes())?;
     folder.commit()?;
 

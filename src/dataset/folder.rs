@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Bytes a file gathers before they go to the system.
 const BUFFER: usize = 1 << 18;
 /// Marks a folder that is still being filled, or was when its process was killed.
-const INCOMPLETE: &str = ".incomplete-";
+pub(super) const INCOMPLETE: &str = ".incomplete-";
 
 /// A dataset's folder while it is being written; dropped before it is complete, it leaves nothing behind.
 pub struct Folder {
@@ -190,7 +190,7 @@ fn is_empty(folder: &Path) -> Result<bool, DatasetError> {
     Ok(names.iter().all(|name| name.as_encoded_bytes().starts_with(INCOMPLETE.as_bytes())))
 }
 
-fn entries(folder: &Path) -> Result<Vec<OsString>, DatasetError> {
+pub(super) fn entries(folder: &Path) -> Result<Vec<OsString>, DatasetError> {
     let list = || fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<Result<_, _>>();
     list().map_err(DatasetError::io("list", folder))
 }

@@ -5,6 +5,7 @@ use super::folder::Folder;
 use super::format::Written;
 use super::readme;
 use super::reference::Quality;
+use super::runs::Run;
 use super::table::Column;
 use crate::scene::{Drawn, Plan};
 use crate::sensor::{Sampling, SensorPlan};
@@ -58,6 +59,8 @@ struct Manifest<'a> {
     drawn: &'a [Drawn],
     faults: [String; 0],
     #[serde(skip_serializing_if = "Option::is_none")]
+    run: Option<&'a Run>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<&'a Quality>,
     files: &'a [FileEntry],
     other_files: Vec<OtherEntry<'a>>,
@@ -91,6 +94,7 @@ pub(super) struct Made<'a> {
     /// Clipped samples of each sensor.
     pub clipped: &'a [u64],
     pub quality: Option<&'a Quality>,
+    pub run: Option<&'a Run>,
 }
 
 /// The manifest of a dataset whose other files are written.
@@ -100,7 +104,7 @@ pub(super) fn text(
     made: &Made<'_>,
     folder: &Folder,
 ) -> Result<String, DatasetError> {
-    let &Made { files, others, clipped, quality } = made;
+    let &Made { files, others, clipped, quality, run } = made;
     let other = |&name| Ok(OtherEntry { name, sha256: checksum(&folder.path(name))? });
     let part = |sensor: &SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
     let manifest = Manifest {
@@ -116,6 +120,7 @@ pub(super) fn text(
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
         faults: [],
+        run,
         reference: quality,
         files,
         other_files: others.iter().map(other).collect::<Result<_, DatasetError>>()?,
