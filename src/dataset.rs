@@ -8,6 +8,7 @@
 //! gyro.csv accel.csv mag.csv      one for each sensor that the scene has
 //! reference.csv   attitude as a method computes it, where the scene asks for it
 //! estimate.csv    what the other side answered, where it did
+//! imu.yaml        white noise and bias walk as Kalibr takes them, of a scene with gyro and accelerometer
 //! motion-0.csv    a log that a motion replays, as it was
 //! ```
 //!
@@ -20,6 +21,7 @@ mod error;
 mod figures;
 mod folder;
 mod format;
+mod kalibr;
 mod manifest;
 mod mat;
 #[cfg(feature = "mcap")]
@@ -152,6 +154,8 @@ fn write_in_blocks(
     let scene = plan.resolved_until(end, settled.as_ref().map(|settled| &settled.reference));
     let attached = attached(plan)?;
     let mut others = vec![("README.md", readme.as_bytes()), ("scene.toml", scene.as_bytes())];
+    let kalibr = kalibr::text(plan);
+    others.extend(kalibr.iter().map(|text| (kalibr::NAME, text.as_bytes())));
     others.extend(attached.iter().map(|(name, contents)| (*name, contents.as_slice())));
     others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
     for (name, contents) in &others {

@@ -13,6 +13,7 @@ pub mod document;
 mod draw;
 mod file;
 mod fixed_keys;
+mod kalibr;
 mod keyframes;
 mod output;
 pub mod parts;

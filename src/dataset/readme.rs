@@ -1,6 +1,7 @@
 //! `README.md`: everything a reader of the numbers would otherwise have to ask.
 
 use super::format::FORMATS;
+use super::kalibr;
 use super::manifest::{self, FileEntry};
 use super::reference::Quality;
 use crate::geometry::{Attitude, Axes};
@@ -133,6 +134,9 @@ fn files_section(plan: &Plan, files: &[FileEntry]) -> String {
 - Numbers written as text are in the shortest form that reads back to the same double.
 ",
     );
+    if kalibr::text(plan).is_some() {
+        text.push_str("- `imu.yaml`: white noise and bias random walk of gyroscope and accelerometer as Kalibr takes them.\n");
+    }
     for file in &plan.attached {
         let _ = writeln!(text, "- `{}`: a log that the scene's motion replays, as it was read.", file.name);
     }

@@ -294,7 +294,7 @@ mod tests {
         assert_eq!(plan.sensors[0].rate.as_hz(), 70.0);
         assert!(plan.resolved.contains("2 mrad/s") && !plan.resolved.contains("sweep"), "{}", plan.resolved);
         assert_eq!(plan.seed, runs.settings(5).0);
-        let dotted = super::Runs::parse(
+        let dotted = Runs::parse(
             "duration = \"1 s\"\nseed = 5\n[gyro]\nrate = \"1 Hz\"\n[sweep]\ngyro.noise_std = [\"1 mrad/s\", \"2 mrad/s\"]\ngyro.rate = [\"50 Hz\", \"60 Hz\", \"70 Hz\"]\n",
             "test",
             "test",
