@@ -8,29 +8,41 @@
 //! gyro.csv accel.csv mag.csv      one for each sensor that the scene has
 //! reference.csv   attitude as a method computes it, where the scene asks for it
 //! estimate.csv    what the other side answered, where it did
+//! imu.yaml        white noise and bias walk as Kalibr takes them, of a scene with gyro and accelerometer
 //! motion-0.csv    a log that a motion replays, as it was
 //! ```
 //!
 //! Everything is in the scene's axes. The folder appears under its name only when it is complete. A format is a
-//! [`Format`]: to add one, write one file beside this one and one line in [`FORMATS`].
+//! [`Format`]: to add one, write one file beside this one and one line in [`FORMATS`]. Of many runs of one scene each
+//! has such a folder: [`write_runs`].
 
 mod csv;
 mod error;
 mod figures;
 mod folder;
 mod format;
+mod kalibr;
 mod manifest;
+mod mat;
+#[cfg(feature = "mcap")]
+mod mcap;
+mod npy;
+#[cfg(feature = "parquet")]
+mod parquet;
 pub mod read;
 mod readme;
 mod reference;
+mod runs;
 mod table;
+mod tum;
 
 pub use error::DatasetError;
 pub use figures::{Figure, Series, figures};
 pub use folder::{Folder, Sink};
-pub use format::{FORMATS, Format, Open, Writer};
+pub use format::{FEATURES, FORMATS, Format, Open, Writer, Written};
 pub use manifest::FileEntry;
 pub use reference::{Errors, Quality};
+pub use runs::{Made, Run, RunOptions, Shard, write_runs};
 pub use table::{Column, Table};
 
 use crate::geometry::Attitude;
@@ -54,12 +66,22 @@ pub struct Options<'a> {
     pub progress: &'a mut dyn FnMut(SimTime),
     /// Once true, writing stops with [`DatasetError::Stopped`] and leaves nothing behind.
     pub stop: Option<&'a AtomicBool>,
+    /// Which of the scene's runs it is, where there are several; the manifest says so.
+    pub run: Option<&'a Run>,
 }
 
 impl<'a> Options<'a> {
     /// CSV, nothing replaced, no estimates, no further files.
     pub fn new(progress: &'a mut dyn FnMut(SimTime)) -> Options<'a> {
-        Options { force: false, formats: vec![FORMATS[0]], estimates: &[], extra: &[], progress, stop: None }
+        Options {
+            force: false,
+            formats: vec![FORMATS[0]],
+            estimates: &[],
+            extra: &[],
+            progress,
+            stop: None,
+            run: None,
+        }
     }
 }
 
@@ -70,7 +92,7 @@ pub struct Summary {
     pub folder: PathBuf,
     /// Its files of numbers, with rows, columns and checksums.
     pub files: Vec<FileEntry>,
-    /// Rows in all files together.
+    /// Rows in all tables together, whatever the number of formats.
     pub rows: u64,
     /// Samples beyond their sensor's range, in the plan's order of sensors.
     pub clipped: Vec<u64>,
@@ -117,7 +139,7 @@ fn write_in_blocks(
     let settled = reference::settled(plan, end)?;
     let folder = Folder::open(dir, options.force)?;
     let tables = table::of(plan, !options.estimates.is_empty());
-    let mut book = Book::open(&tables, &folder, &options.formats)?;
+    let mut book = Book::open(plan, &tables, &folder, &options.formats)?;
     let clipped = play(plan, end, block, &mut book, options.progress, options.stop)?;
     let quality = reference::write(plan, settled.as_ref(), end, |step| {
         book.row(table::TRUTH + 1 + plan.sensors.len(), step.t, &table::reference(plan.axes, step.attitude))
@@ -125,23 +147,31 @@ fn write_in_blocks(
     for (t, attitude) in options.estimates {
         book.row(tables.len() - 1, *t, &table::quaternion(plan.axes, *attitude))?;
     }
+    let rows = book.rows.iter().sum();
     let files = book.close(&folder)?;
 
     let readme = readme::text(plan, &files, quality.as_ref());
     let scene = plan.resolved_until(end, settled.as_ref().map(|settled| &settled.reference));
     let attached = attached(plan)?;
     let mut others = vec![("README.md", readme.as_bytes()), ("scene.toml", scene.as_bytes())];
+    let kalibr = kalibr::text(plan);
+    others.extend(kalibr.iter().map(|text| (kalibr::NAME, text.as_bytes())));
     others.extend(attached.iter().map(|(name, contents)| (*name, contents.as_slice())));
     others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
     for (name, contents) in &others {
         folder.put(name, contents)?;
     }
     let others: Vec<_> = others.into_iter().map(|(name, _)| name).collect();
-    let made =
-        manifest::Made { files: &files, others: &others, clipped: &clipped, quality: quality.as_ref() };
+    let made = manifest::Made {
+        files: &files,
+        others: &others,
+        clipped: &clipped,
+        quality: quality.as_ref(),
+        run: options.run,
+    };
     folder.put("manifest.json", manifest::text(plan, end, &made, &folder)?.as_bytes())?;
     folder.commit()?;
-    let rows = files.iter().map(|file| file.rows).sum();
+
     Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })
 }
 
@@ -156,7 +186,7 @@ fn play(
     plan: &Plan,
     end: SimTime,
     block: usize,
-    book: &mut Book<'_>,
+    book: &mut Book,
     progress: &mut dyn FnMut(SimTime),
     stop: Option<&AtomicBool>,
 ) -> Result<Vec<u64>, DatasetError> {
@@ -184,20 +214,20 @@ fn play(
 }
 
 /// The tables being written, in every format asked for.
-struct Book<'a> {
-    tables: &'a [Table],
+struct Book {
     rows: Vec<u64>,
     writers: Vec<(&'static Format, Box<dyn Writer>)>,
 }
 
-impl<'a> Book<'a> {
+impl Book {
     fn open(
-        tables: &'a [Table],
+        plan: &Plan,
+        tables: &[Table],
         folder: &Folder,
         formats: &[&'static Format],
-    ) -> Result<Book<'a>, DatasetError> {
-        let writers = formats.iter().map(|format| Ok((*format, (format.open)(tables, folder)?)));
-        Ok(Book { tables, rows: vec![0; tables.len()], writers: writers.collect::<Result<_, _>>()? })
+    ) -> Result<Book, DatasetError> {
+        let writers = formats.iter().map(|format| Ok((*format, (format.open)(plan, tables, folder)?)));
+        Ok(Book { rows: vec![0; tables.len()], writers: writers.collect::<Result<_, _>>()? })
     }
 
     fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError> {
@@ -208,9 +238,8 @@ impl<'a> Book<'a> {
     fn close(self, folder: &Folder) -> Result<Vec<FileEntry>, DatasetError> {
         let mut files = Vec::new();
         for (format, writer) in self.writers {
-            for (name, table) in writer.finish()? {
-                let columns = self.tables[table].columns.clone();
-                files.push(FileEntry::of(folder, name, format.name, self.rows[table], columns)?);
+            for written in writer.finish(&self.rows)? {
+                files.push(FileEntry::of(folder, written, format.name)?);
             }
         }
         Ok(files)

@@ -29,6 +29,7 @@ pub mod link;
 pub mod listen;
 pub mod motion;
 pub mod os;
+pub mod parallel;
 pub mod player;
 pub mod quantity;
 pub mod random;

@@ -13,6 +13,7 @@ pub mod document;
 mod draw;
 mod file;
 mod fixed_keys;
+mod kalibr;
 mod keyframes;
 mod nested;
 mod output;
@@ -22,6 +23,7 @@ mod reference;
 mod section;
 mod sensors;
 mod suggest;
+mod sweep;
 mod vehicle;
 
 pub use document::Place;
@@ -31,6 +33,7 @@ pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
 pub use output::{Destination, Output, Overload};
 pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
+pub use sweep::{Runs, SweptValue};
 
 use crate::earth::{self, Day};
 use crate::geometry::Axes;
@@ -85,16 +88,8 @@ impl Plan {
     /// # Errors
     /// No such scene, or every mistake in it.
     pub fn load(scene: &str, sets: &[String]) -> Result<Plan, SceneError> {
-        let (text, name) = match (builtin::text(scene), Path::new(scene)) {
-            (Some(text), path) if !path.exists() => (text.to_string(), format!("{scene} (built-in)")),
-            (_, path) => {
-                let unreadable = |error| SceneError::unreadable(scene, &error);
-                (std::fs::read_to_string(path).map_err(unreadable)?, scene.to_string())
-            }
-        };
-        let stem =
-            Path::new(scene).file_stem().map_or(scene.to_string(), |stem| stem.to_string_lossy().into());
-        Plan::parse(&text, &name, &stem, sets)
+        let (text, source, name) = source(scene)?;
+        Plan::parse(&text, &source, &name, sets)
     }
 
     /// Reads a scene's text. `source` is what messages call it, `name` its name unless it gives one. A file that the
@@ -108,6 +103,10 @@ impl Plan {
         for set in sets {
             table.set(set).map_err(one)?;
         }
+        Plan::of(table, source, name)
+    }
+
+    fn of(table: Table, source: &str, name: &str) -> Result<Plan, SceneError> {
         let reader = Reader::new(source);
         let plan = read(&reader, table, name);
         match reader.finish() {
@@ -149,6 +148,19 @@ impl Plan {
     }
 }
 
+/// The text of a scene by its path or built-in name, what messages call it, and its name unless it gives one.
+fn source(scene: &str) -> Result<(String, String, String), SceneError> {
+    let (text, source) = match (builtin::text(scene), Path::new(scene)) {
+        (Some(text), path) if !path.exists() => (text.to_string(), format!("{scene} (built-in)")),
+        (_, path) => {
+            let unreadable = |error| SceneError::unreadable(scene, &error);
+            (std::fs::read_to_string(path).map_err(unreadable)?, scene.to_string())
+        }
+    };
+    let stem = Path::new(scene).file_stem().map_or(scene.to_string(), |stem| stem.to_string_lossy().into());
+    Ok((text, source, stem))
+}
+
 /// What the table says; a scene with mistakes, which the reader collects, gives some plan that is not to be used.
 fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     let whole = table.place.clone();
@@ -172,6 +184,9 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         reference::reference(&top, sensors.complete.then_some(&sensors.plans), &trajectory).unzip();
     let moving = trajectory.moving_until();
     let default = (moving > SimTime::ZERO).then(|| moving.to_string());
+    // What differs from run to run is the business of whoever makes several.
+    let swept = top.entry("sweep").map(sweep::check).unwrap_or_default();
+    swept.iter().for_each(|mistake| reader.mistake(&mistake.place, &mistake.message));
     let duration = top.time("duration", default.as_deref(), Sign::Positive);
 
     let mut resolved = top.finish();

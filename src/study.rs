@@ -8,7 +8,7 @@ pub mod accuracy;
 pub mod cost;
 mod inputs;
 pub mod motions;
-mod parallel;
+
 pub mod stability;
 
-pub use parallel::{Progress, all_cores};
+pub use crate::parallel::{Progress, all_cores};

@@ -49,22 +49,23 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("listen", &["link", "wire", "clock", "sensor", "report", "os"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
-    ("dataset", &["player", "scene", "sensor", "motion"]),
-    ("study", &["player", "motion", "clock", "scene", "sensor", "report"]),
+    ("dataset", &["player", "scene", "sensor", "motion", "parallel"]),
+    ("study", &["player", "motion", "clock", "scene", "sensor", "report", "parallel"]),
+    ("parallel", &[]),
     (
         "cli",
         &[
             "scene", "effects", "session", "listen", "dataset", "score", "study", "report", "motion",
-            "sensor", "wire", "link", "player", "os", "clock", "earth",
+            "sensor", "wire", "link", "player", "os", "clock", "earth", "parallel",
         ],
     ),
 ];
 
 /// What of the outside only some rooms may touch.
 const OUTSIDE: &[(&str, &[&str])] = &[
-    // The demonstration of `cli` runs a firmware, which has a processor of its own; a study spreads runs that have
+    // The demonstration of `cli` runs a firmware, which has a processor of its own; `parallel` spreads jobs that have
     // nothing to do with one another over the processors.
-    ("std::thread", &["session", "link", "cli", "study"]),
+    ("std::thread", &["session", "link", "cli", "parallel"]),
     // `os` reads what the kernel shows as files of its own: who holds a port, what a device is.
     ("std::fs", &["scene", "dataset", "report", "link", "os", "score", "study"]),
     ("std::net", &["link"]),

@@ -2,10 +2,11 @@
 
 use super::progress::Bar;
 use super::{Refusal, Verdict};
-use crate::dataset::{self, FORMATS, Figure, Format, Options, Summary};
+use crate::dataset::{self, FEATURES, FORMATS, Figure, Format, Made, Options, RunOptions, Shard, Summary};
+use crate::parallel;
 use crate::report::Report;
 use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
-use crate::scene::{Plan, nearest};
+use crate::scene::{Plan, Runs, nearest};
 use crate::session::{Outcome, on_interrupt};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -23,6 +24,13 @@ pub struct Arguments {
     /// Override one key of the scene, such as gyro.rate='8 kHz'
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Make this many runs of the scene, each in a folder of its own, seeded by its index and with its part of [sweep]
+    /// (default where [sweep] has lists: every combination once)
+    #[arg(long, value_name = "N")]
+    runs: Option<u64>,
+    /// Make only the runs whose index leaves the remainder I when divided by N
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// Draw the sensors and the reference angles as SVG too
     #[arg(long)]
     figures: bool,
@@ -33,6 +41,11 @@ pub struct Arguments {
 
 fn format(name: &str) -> Result<&'static Format, String> {
     Format::from_name(name).ok_or_else(|| {
+        if FEATURES.contains(&name) {
+            return format!(
+                "`{name}` is not in this build: it brings heavy crates, so build with `--features {name}`"
+            );
+        }
         let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
         let near =
             nearest(name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
@@ -41,6 +54,9 @@ fn format(name: &str) -> Result<&'static Format, String> {
 }
 
 pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    if let Some(runs) = several(arguments)? {
+        return generate_runs(arguments, &runs);
+    }
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
     dataset::may_write(&arguments.out, arguments.force)?;
     plan.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
@@ -67,6 +83,40 @@ pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
         summary.rows
     );
     say_clipped(&plan, &summary);
+    Ok(Verdict::Fine)
+}
+
+/// The scene as one of many runs, if there are to be several.
+fn several(arguments: &Arguments) -> Result<Option<Runs>, Refusal> {
+    let runs = Runs::load(&arguments.scene, &arguments.set)?;
+    let asked = arguments.runs.is_some() || arguments.shard.is_some() || runs.keys().next().is_some();
+    if asked && arguments.runs.is_none() && runs.combinations() == 1 {
+        return Err(Refusal("how many runs? say so, such as --runs 100".into()));
+    }
+    Ok(asked.then_some(runs))
+}
+
+fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal> {
+    let runs = arguments.runs.unwrap_or(scene.combinations());
+    let first = scene.plan(0)?;
+    first.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    let (started, bar, stop) = (Instant::now(), Bar::of_jobs("runs"), on_interrupt());
+    let options = RunOptions {
+        runs,
+        shard: arguments.shard.unwrap_or(Shard::WHOLE),
+        force: arguments.force,
+        formats: arguments.format.clone(),
+        extra: &|plan| if arguments.figures { figures(plan) } else { Vec::new() },
+        threads: parallel::all_cores(),
+        progress: &|done, all| bar.runs(done, all),
+        stop: &stop,
+    };
+    let made = dataset::write_runs(scene, &arguments.out, &options);
+    bar.clear();
+    let Made { written, kept } = made?;
+    let there = if kept > 0 { format!(", {kept} were there already") } else { String::new() };
+    let seconds = started.elapsed().as_secs_f64();
+    eprintln!("{}: {written} runs of {} in {seconds:.2} s{there}", arguments.out.display(), first.duration);
     Ok(Verdict::Fine)
 }
 

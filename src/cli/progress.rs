@@ -3,8 +3,9 @@
 use crate::listen;
 use crate::session::Progress;
 use crate::time::SimTime;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::time::Duration;
 
 /// A bar that moves with scene time.
 pub struct Bar(ProgressBar);
@@ -63,8 +64,22 @@ impl Bar {
 
     /// Of a dataset.
     pub fn offline(&self, t: SimTime) {
-        self.0.set_message(format!("{:.1} s", t.seconds()));
         self.0.set_position((t.0 / MILLIS) as u64);
+        self.0.set_message(format!("{:.1} s, {}", t.seconds(), self.pace(1e-3, "times real time")));
+    }
+
+    /// Of runs of a scene.
+    pub fn runs(&self, done: usize, all: usize) {
+        self.jobs(done, all);
+        self.0.set_message(format!("{done} of {all} runs, {}", self.pace(1.0, "runs/s")));
+    }
+
+    /// How fast it moves on the whole, a position being so many of what is counted, and how long that leaves.
+    fn pace(&self, each: f64, what: &str) -> String {
+        let (elapsed, position) = (self.0.elapsed().as_secs_f64(), self.0.position() as f64);
+        let rate = position / elapsed.max(1e-9);
+        let left = (self.0.length().unwrap_or_default() as f64 - position).max(0.0) / rate.max(1e-9);
+        format!("{:.1} {what}, {} left", rate * each, HumanDuration(Duration::from_secs_f64(left.min(1e9))))
     }
 
     /// A line above the bar.

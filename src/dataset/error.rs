@@ -35,6 +35,20 @@ pub enum DatasetError {
     /// Asked to stop.
     #[error("stopped before the dataset was complete; nothing was kept")]
     Stopped,
+    /// Asked to stop between runs.
+    #[error("stopped: {complete} of {of} runs are complete; the same command makes the others")]
+    RunsStopped {
+        /// Of them complete.
+        complete: u64,
+        /// Asked for.
+        of: u64,
+    },
+    /// A run's folder with something else in it.
+    #[error("{} holds a run of another scene, version or format; name another folder, or replace it with --force", path.display())]
+    OtherRun {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The system refused.
     #[error("cannot {doing} {}: {source}", path.display())]
     Io {

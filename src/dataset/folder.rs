@@ -9,13 +9,13 @@ use super::error::DatasetError;
 use super::manifest;
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Bytes a file gathers before they go to the system.
 const BUFFER: usize = 1 << 18;
 /// Marks a folder that is still being filled, or was when its process was killed.
-const INCOMPLETE: &str = ".incomplete-";
+pub(super) const INCOMPLETE: &str = ".incomplete-";
 
 /// A dataset's folder while it is being written; dropped before it is complete, it leaves nothing behind.
 pub struct Folder {
@@ -45,6 +45,17 @@ impl Folder {
         let path = self.target.join(name);
         let file = File::create(self.workshop.join(name)).map_err(DatasetError::io("create", &path))?;
         Ok(Sink { out: BufWriter::with_capacity(BUFFER, file), path })
+    }
+
+    /// A file without a name, for what has to be put in another order: gone with its last handle.
+    pub(super) fn scratch(&self, name: &str, buffer: usize) -> Result<Sink, DatasetError> {
+        let path = self.workshop.join(name);
+        let create = || {
+            let file = File::options().read(true).write(true).create_new(true).open(&path)?;
+            fs::remove_file(&path).map(|()| file)
+        };
+        let file = create().map_err(DatasetError::io("create", &path))?;
+        Ok(Sink { out: BufWriter::with_capacity(buffer, file), path })
     }
 
     /// A new file with these contents.
@@ -109,6 +120,24 @@ impl Sink {
         self.out.write_all(bytes).map_err(|source| self.failed(source))
     }
 
+    /// Puts these bytes in place of as many at the beginning, and goes on at the end.
+    pub(super) fn put_at_start(&mut self, bytes: &[u8]) -> Result<(), DatasetError> {
+        let mut put = || {
+            self.out.seek(SeekFrom::Start(0))?;
+            self.out.write_all(bytes)?;
+            self.out.seek(SeekFrom::End(0))
+        };
+        put().map(drop).map_err(|source| self.failed(source))
+    }
+
+    /// The file, to be read from its beginning, and what messages call it.
+    pub(super) fn reopen(mut self) -> Result<(File, PathBuf), DatasetError> {
+        self.out.rewind().map_err(|source| self.failed(source))?;
+        let Sink { out, path } = self;
+        let file = out.into_inner().map_err(|error| DatasetError::io("write", &path)(error.into_error()))?;
+        Ok((file, path))
+    }
+
     /// Hands everything to the system.
     ///
     /// # Errors
@@ -120,6 +149,23 @@ impl Sink {
     #[cold]
     fn failed(&self, source: io::Error) -> DatasetError {
         DatasetError::io("write", &self.path)(source)
+    }
+}
+
+// For the crates that write to a stream of their own accord.
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl Seek for Sink {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.out.seek(to)
     }
 }
 
@@ -154,7 +200,7 @@ fn is_empty(folder: &Path) -> Result<bool, DatasetError> {
     Ok(names.iter().all(|name| name.as_encoded_bytes().starts_with(INCOMPLETE.as_bytes())))
 }
 
-fn entries(folder: &Path) -> Result<Vec<OsString>, DatasetError> {
+pub(super) fn entries(folder: &Path) -> Result<Vec<OsString>, DatasetError> {
     let list = || fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<Result<_, _>>();
     list().map_err(DatasetError::io("list", folder))
 }

@@ -1,9 +1,10 @@
 //! File formats as a table: each holds the same tables under the same names.
 
-use super::csv;
 use super::error::DatasetError;
 use super::folder::Folder;
-use super::table::Table;
+use super::table::{Column, Table};
+use super::{csv, mat, npy, tum};
+use crate::scene::Plan;
 use crate::time::SimTime;
 
 /// A format: its name and how to begin a dataset in it.
@@ -17,16 +18,28 @@ pub struct Format {
     pub open: Open,
 }
 
-/// Begins a dataset of these tables in a folder.
-pub type Open = fn(&[Table], &Folder) -> Result<Box<dyn Writer>, DatasetError>;
+/// Begins a dataset of a plan's tables in a folder.
+pub type Open = fn(&Plan, &[Table], &Folder) -> Result<Box<dyn Writer>, DatasetError>;
 
-/// Every format.
-pub static FORMATS: [&Format; 1] = [&csv::FORMAT];
+/// Every format of this build.
+pub static FORMATS: &[&Format] = &[
+    &csv::FORMAT,
+    &npy::FORMAT,
+    &mat::FORMAT,
+    &tum::FORMAT,
+    #[cfg(feature = "parquet")]
+    &super::parquet::FORMAT,
+    #[cfg(feature = "mcap")]
+    &super::mcap::FORMAT,
+];
+
+/// The formats behind a cargo feature of the same name.
+pub const FEATURES: [&str; 2] = ["parquet", "mcap"];
 
 impl Format {
     /// The format of that name.
     pub fn from_name(name: &str) -> Option<&'static Format> {
-        FORMATS.into_iter().find(|format| format.name == name)
+        FORMATS.iter().copied().find(|format| format.name == name)
     }
 }
 
@@ -38,9 +51,32 @@ pub trait Writer {
     /// The file could not be written.
     fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError>;
 
-    /// Completes the files: the name of each and the index of the table it holds.
+    /// Completes the files, told how many rows each table got.
     ///
     /// # Errors
     /// A file could not be written.
-    fn finish(self: Box<Self>) -> Result<Vec<(String, usize)>, DatasetError>;
+    fn finish(self: Box<Self>, rows: &[u64]) -> Result<Vec<Written>, DatasetError>;
+}
+
+/// A file of numbers that is complete.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Its name in the folder.
+    pub name: String,
+    /// Its rows, or messages.
+    pub rows: u64,
+    /// Its columns in order; none where the format has something else.
+    pub columns: Vec<Column>,
+}
+
+/// The columns of a table as every format but CSV has them: `t_s`, the time in seconds, stands behind `t_ns`.
+pub(super) fn with_seconds(table: &Table) -> Vec<Column> {
+    let mut columns = table.columns.clone();
+    columns.insert(1, Column { name: "t_s".into(), unit: "s" });
+    columns
+}
+
+/// A number as CSV has it: −0 is 0.
+pub(super) fn plain(value: f64) -> f64 {
+    value + 0.0
 }

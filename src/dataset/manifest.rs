@@ -2,8 +2,10 @@
 
 use super::error::DatasetError;
 use super::folder::Folder;
+use super::format::Written;
 use super::readme;
 use super::reference::Quality;
+use super::runs::Run;
 use super::table::Column;
 use crate::scene::{Drawn, Plan};
 use crate::sensor::{Sampling, SensorPlan};
@@ -22,9 +24,9 @@ pub struct FileEntry {
     pub name: String,
     /// The name of its format.
     pub format: &'static str,
-    /// Rows, the header not counted.
+    /// Rows, the header not counted; messages, where it has those.
     pub rows: u64,
-    /// Its columns in order.
+    /// Its columns in order; none where the format has something else.
     pub columns: Vec<Column>,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
@@ -33,11 +35,10 @@ pub struct FileEntry {
 impl FileEntry {
     pub(super) fn of(
         folder: &Folder,
-        name: String,
+        written: Written,
         format: &'static str,
-        rows: u64,
-        columns: Vec<Column>,
     ) -> Result<FileEntry, DatasetError> {
+        let Written { name, rows, columns } = written;
         let sha256 = checksum(&folder.path(&name))?;
         Ok(FileEntry { name, format, rows, columns, sha256 })
     }
@@ -57,6 +58,8 @@ struct Manifest<'a> {
     parts: BTreeMap<&'static str, &'static str>,
     drawn: &'a [Drawn],
     faults: [String; 0],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    run: Option<&'a Run>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<&'a Quality>,
     files: &'a [FileEntry],
@@ -91,6 +94,7 @@ pub(super) struct Made<'a> {
     /// Clipped samples of each sensor.
     pub clipped: &'a [u64],
     pub quality: Option<&'a Quality>,
+    pub run: Option<&'a Run>,
 }
 
 /// The manifest of a dataset whose other files are written.
@@ -100,7 +104,7 @@ pub(super) fn text(
     made: &Made<'_>,
     folder: &Folder,
 ) -> Result<String, DatasetError> {
-    let &Made { files, others, clipped, quality } = made;
+    let &Made { files, others, clipped, quality, run } = made;
     let other = |&name| Ok(OtherEntry { name, sha256: checksum(&folder.path(name))? });
     let part = |sensor: &SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
     let manifest = Manifest {
@@ -116,6 +120,7 @@ pub(super) fn text(
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
         faults: [],
+        run,
         reference: quality,
         files,
         other_files: others.iter().map(other).collect::<Result<_, DatasetError>>()?,

@@ -1,5 +1,7 @@
 //! `README.md`: everything a reader of the numbers would otherwise have to ask.
 
+use super::format::FORMATS;
+use super::kalibr;
 use super::manifest::{self, FileEntry};
 use super::reference::Quality;
 use crate::geometry::{Attitude, Axes};
@@ -63,8 +65,9 @@ pub(super) fn text(plan: &Plan, files: &[FileEntry], quality: Option<&Quality>) 
         files_section(plan, files),
         quality.map_or(String::new(), reference_section),
         readings_section(plan),
-        loading_section(plan),
-        matlab_section(plan.axes),
+        formats_section(files),
+        loading_section(plan, files),
+        matlab_section(plan.axes, files),
     ];
     sections.into_iter().filter(|section| !section.is_empty()).collect::<Vec<_>>().join("\n")
 }
@@ -119,17 +122,21 @@ fn files_section(plan: &Plan, files: &[FileEntry]) -> String {
     let mut text = String::from("## Files\n\n| file | rows | columns |\n|---|---|---|\n");
     for file in files {
         let columns: Vec<_> = file.columns.iter().map(|column| column.name.as_str()).collect();
-        let _ = writeln!(text, "| `{}` | {} | `{}` |", file.name, file.rows, columns.join(","));
+        let columns = if columns.is_empty() { "messages".into() } else { format!("`{}`", columns.join(",")) };
+        let _ = writeln!(text, "| `{}` | {} | {columns} |", file.name, file.rows);
     }
     text.push_str(
         "
-- `truth.csv`: the exact attitude, angular rate, specific force and magnetic field, without any sensor's errors, at
+- `truth`: the exact attitude, angular rate, specific force and magnetic field, without any sensor's errors, at
   every time at which any sensor has a sample.
-- a sensor's file: what it reads (`x`, `y`, `z`); the error-free reading (`true_`), sampled as the reading is; and
+- a sensor's table: what it reads (`x`, `y`, `z`); the error-free reading (`true_`), sampled as the reading is; and
   the bias in effect (`bias_`). All in the scene's body axes, however the part is mounted.
-- Numbers are in the shortest form that reads back to the same double.
+- Numbers written as text are in the shortest form that reads back to the same double.
 ",
     );
+    if kalibr::text(plan).is_some() {
+        text.push_str("- `imu.yaml`: white noise and bias random walk of gyroscope and accelerometer as Kalibr takes them.\n");
+    }
     for file in &plan.attached {
         let _ = writeln!(text, "- `{}`: a log that the scene's motion replays, as it was read.", file.name);
     }
@@ -187,8 +194,28 @@ fn describe(sensor: &SensorPlan) -> String {
     format!("{}: {}, sampling {sampling}{part}", sensor.kind, sensor.rate)
 }
 
-fn loading_section(plan: &Plan) -> String {
-    let mut text = String::from(
+fn has(files: &[FileEntry], format: &str) -> bool {
+    files.iter().any(|file| file.format == format)
+}
+
+/// What the formats besides CSV hold.
+fn formats_section(files: &[FileEntry]) -> String {
+    let others = FORMATS.iter().filter(|format| format.name != "csv" && has(files, format.name));
+    let lines: Vec<_> = others.map(|format| format!("- {}: {}\n", format.name, format.about)).collect();
+    if lines.is_empty() {
+        return String::new();
+    }
+    let seconds = "Besides CSV a table has `t_s` behind `t_ns`: the time in seconds.\n";
+    format!("## Formats\n\n{}\n{seconds}", lines.concat())
+}
+
+fn loading_section(plan: &Plan, files: &[FileEntry]) -> String {
+    let load = match (has(files, "csv"), has(files, "npy")) {
+        (true, _) => "np.genfromtxt(name + \".csv\", delimiter=\",\", names=True)",
+        (_, true) => "np.load(name + \".npy\")",
+        _ => return String::new(),
+    };
+    let mut text = format!(
         "## Loading
 
 Python with numpy:
@@ -197,14 +224,14 @@ Python with numpy:
 import numpy as np
 
 def load(name):
-    return np.genfromtxt(name + \".csv\", delimiter=\",\", names=True)
+    return {load}
 
 def xyz(table):
-    return np.column_stack([table[column] for column in table.dtype.names[1:4]])
+    return np.column_stack([table[c] for c in table.dtype.names if c[:2] in (\"x_\", \"y_\", \"z_\")])
 
 truth = load(\"truth\")
 q = np.column_stack([truth[c] for c in (\"qw\", \"qx\", \"qy\", \"qz\")])
-",
+"
     );
     for kind in plan.sensors.iter().map(|sensor| sensor.kind) {
         let _ = writeln!(text, "{kind} = load(\"{kind}\")    # times {kind}[\"t_ns\"], readings xyz({kind})");
@@ -247,7 +274,22 @@ estimate = {filter}(gyr=xyz(gyro), acc={sign}held(accel), mag=held(mag), frequen
     )
 }
 
-fn matlab_section(axes: Axes) -> String {
+fn matlab_section(axes: Axes, files: &[FileEntry]) -> String {
+    let load = match (has(files, "csv"), has(files, "mat")) {
+        (true, _) => {
+            "gyro = readtable('gyro.csv');  gyr = gyro{:, 2:4};  t = gyro.t_ns * 1e-9;
+accel = readtable('accel.csv'); acc = accel{:, 2:4};
+magnetometer = readtable('mag.csv'); mag = magnetometer{:, 2:4};
+truth = readtable('truth.csv'); q = quaternion(truth{:, 2:5});   % rotatepoint(q, v) takes body vectors to nav"
+        }
+        (_, true) => {
+            "gyro = load('gyro.mat');  gyr = [gyro.x_rad_s gyro.y_rad_s gyro.z_rad_s];  t = gyro.t_s;
+accel = load('accel.mat'); acc = [accel.x_m_s2 accel.y_m_s2 accel.z_m_s2];
+magnetometer = load('mag.mat'); mag = [magnetometer.x_ut magnetometer.y_ut magnetometer.z_ut];
+truth = load('truth.mat'); q = quaternion(truth.qw, truth.qx, truth.qy, truth.qz);   % rotatepoint(q, v): body to nav"
+        }
+        _ => return String::new(),
+    };
     let turn = match axes {
         Axes::NedFrd => "accNED = -acc;                        % the whole accelerometer changes its sign",
         Axes::EnuFlu => {
@@ -260,10 +302,7 @@ accNED = -(acc .* [1 -1 -1]);         % the same turn, then the whole accelerome
         "MATLAB (a sensor that the scene lacks has no file):
 
 ```matlab
-gyro = readtable('gyro.csv');  gyr = gyro{{:, 2:4}};  t = gyro.t_ns * 1e-9;
-accel = readtable('accel.csv'); acc = accel{{:, 2:4}};
-magnetometer = readtable('mag.csv'); mag = magnetometer{{:, 2:4}};
-truth = readtable('truth.csv'); q = quaternion(truth{{:, 2:5}});   % rotatepoint(q, v) takes body vectors to nav
+{load}
 ```
 
 MATLAB's `imuSensor` in NED, and the filters made for it, report gravity minus acceleration: +9.81 at rest, the

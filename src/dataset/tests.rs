@@ -89,6 +89,7 @@ fn files_and_columns_are_exactly_as_specified() {
         "accel.csv",
         "estimate.csv",
         "gyro.csv",
+        "imu.yaml",
         "mag.csv",
         "manifest.json",
         "scene.toml",

@@ -100,6 +100,11 @@ pub struct Node {
 }
 
 impl Node {
+    /// A value whose text does not stand in the source letter for letter.
+    pub(super) fn new(value: Value, place: Place) -> Node {
+        Node { value, place, plain: false }
+    }
+
     /// Where the letter at byte `offset` of this node's text stands.
     pub fn place_in_text(&self, offset: usize) -> Place {
         match &self.value {
@@ -172,19 +177,25 @@ impl Table {
             return Err(wrong("is no KEY=VALUE: write, for example, --set gyro.rate='8 kHz'".into()));
         };
         let value = value_of(text.trim(), &place);
+        self.put(path.trim(), Node::new(value, place.clone()))
+    }
+
+    /// Sets one value by its dotted path; its place is where mistakes are said to be.
+    pub(super) fn put(&mut self, path: &str, node: Node) -> Result<(), Mistake> {
+        let place = node.place.clone();
+        let wrong = |message: String| Mistake { place: place.clone(), message };
         let mut table = self;
-        let path = path.trim();
         let mut steps = path.split('.').peekable();
         while let Some(step) = steps.next() {
             if step.is_empty() {
                 return Err(wrong(format!("`{path}` is no key: write, for example, gyro.rate")));
             }
-            let node = table.entry(step, &place);
+            let found = table.entry(step, &place);
             if steps.peek().is_none() {
-                *node = Node { value, place, plain: false };
+                *found = node;
                 return Ok(());
             }
-            let inner = match &mut node.value {
+            let inner = match &mut found.value {
                 Value::Array(items) => {
                     let (index, count) = (steps.next().unwrap_or_default(), items.len());
                     let item = index.parse().ok().and_then(|i: usize| items.get_mut(i));
@@ -195,7 +206,7 @@ impl Table {
                     };
                     let item = item.ok_or_else(|| wrong(no_item))?;
                     if steps.peek().is_none() {
-                        *item = Node { value, place, plain: false };
+                        *item = node;
                         return Ok(());
                     }
                     &mut item.value

@@ -12,6 +12,11 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ),
     ("", "axes", "\"ned-frd\" (default) or \"enu-flu\": how this file and its datasets are written"),
     ("", "limits", "of the report, such as [\"sensors.gyro.late_us.p99<200\"]"),
+    (
+        "sweep",
+        "\"gyro.rate\"",
+        "that key or any other, as --set names it: its values from run to run of `generate --runs`: [\"1 kHz\", \"2 kHz\"], every combination of the lists in turn, or { uniform = [low, high] }, drawn for each run",
+    ),
     ("start", "attitude", "roll, pitch, yaw at t = 0: \"[0, 0, 0] deg\""),
     ("start", "quaternion", "instead: [w, x, y, z], body to nav"),
     ("earth", "gravity", "its strength, or the acceleration of free fall as a nav vector: \"9.80665 m/s^2\""),

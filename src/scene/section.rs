@@ -116,6 +116,11 @@ impl<'r> Section<'r> {
         }
     }
 
+    /// Takes an entry out, whose meaning others have taken over.
+    pub fn remove(&mut self, key: &str) {
+        self.table.entries.retain(|entry| entry.key != key);
+    }
+
     /// Whether the table has the key, without making it a known one.
     pub fn has_quietly(&self, key: &str) -> bool {
         self.table.get(key).is_some()

@@ -1,6 +1,7 @@
 //! `[gyro]`, `[accel]` and `[mag]`: rates, parts and error terms.
 
 use super::document::{Entry, Node, Table, Value};
+use super::kalibr;
 use super::section::Section;
 use super::suggest;
 use crate::geometry::Rotation;
@@ -42,7 +43,8 @@ fn sensor(
     part: Option<&'static str>,
     seed: u64,
 ) -> Option<SensorPlan> {
-    if !section.has("rate") {
+    // A Kalibr file that could not be read would have had one.
+    if !section.has("rate") && !kalibr::is_meant(section) {
         section.lacks(format!("[{kind}] needs a rate, such as rate = \"100 Hz\""));
     }
     let rate = section.rate("rate");
@@ -101,6 +103,13 @@ fn mount(section: &Section<'_>) -> Option<Mount> {
 
 /// Fills a section from the part it names; keys beside `part` override it.
 fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'static str> {
+    if kalibr::is_meant(section) {
+        let preset = kalibr::preset(section, kind)?;
+        let fill = fill(section, kind, &preset, None);
+        section.add(fill);
+        section.remove("part");
+        return None;
+    }
     let name = section.text("part", None)?;
     let Some(part) = parts::find(&name, kind) else {
         let names: Vec<_> = parts::names(kind).collect();

@@ -7,9 +7,9 @@
 
 use super::inputs::gather;
 use super::motions::{Case, Path};
-use super::parallel::{self, Progress};
 use crate::geometry::angle_between;
 use crate::motion::method::{Input, METHODS, MethodKind, Precision, Quaternion, Real};
+use crate::parallel::{self, Progress};
 use glam::DQuat;
 use serde::Serialize;
 use std::hint::black_box;

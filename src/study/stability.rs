@@ -9,8 +9,8 @@ mod trials;
 
 pub use cases::CASES;
 
-use super::parallel::{self, Progress};
 use crate::motion::method::{METHODS, MethodKind};
+use crate::parallel::{self, Progress};
 use serde::Serialize;
 
 /// A line of `stability.csv`; the fields are its columns.

@@ -14,7 +14,7 @@ pub fn all_cores() -> usize {
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// `work(0), …, work(count − 1)`, each done once by one of `threads` threads, the next job to whoever is free.
-pub(super) fn map<T: Send>(
+pub fn map<T: Send>(
     threads: usize,
     count: usize,
     progress: Progress,

@@ -1,0 +1,195 @@
+//! MCAP as ROS 2 records it: readings and truth as `sensor_msgs` messages in CDR, in one file `dataset.mcap`.
+//!
+//! | topic | message | holds |
+//! |---|---|---|
+//! | `/imu/data_raw` | `sensor_msgs/msg/Imu` | gyroscope and accelerometer, where both have the same ticks |
+//! | `/imu/gyro`, `/imu/accel` | the same | each by itself, where they have not |
+//! | `/imu/mag` | `sensor_msgs/msg/MagneticField` | magnetometer, in tesla |
+//! | `/truth`, `/truth/mag` | `Imu`, `MagneticField` | the exact attitude, angular rate, specific force and field |
+//! | `/reference`, `/estimate` | `geometry_msgs/msg/QuaternionStamped` | attitudes, where the dataset has them |
+//!
+//! What a message does not hold has −1 as the first element of its covariance, as the message's own definition wants
+//! it; the other covariances are 0, unknown. Format: MCAP specification, with its ROS 2 profile.
+
+mod messages;
+
+use super::error::DatasetError;
+use super::folder::{Folder, Sink};
+use super::format::{Format, Writer, Written};
+use super::table::{TRUTH, Table};
+use crate::geometry::Axes;
+use crate::scene::Plan;
+use crate::sensor::{SensorKind, SensorPlan};
+use crate::time::SimTime;
+use ::mcap::records::MessageHeader;
+use ::mcap::{McapError, WriteOptions};
+use messages::{Imu, Kind, Stamped, imu, magnetic_field, quaternion};
+use std::collections::BTreeMap;
+
+pub(super) static FORMAT: Format = Format {
+    name: "mcap",
+    about: "one file of ROS 2 messages (`sensor_msgs/msg/Imu`, `MagneticField` in tesla), as rosbag2 records them",
+    open,
+};
+
+const FILE: &str = "dataset.mcap";
+
+fn open(plan: &Plan, tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer>, DatasetError> {
+    let options = WriteOptions::new()
+        .profile("ros2")
+        .library(concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")))
+        .compression(None);
+    let writer = options.create(folder.file(FILE)?).map_err(failed)?;
+    let mut mcap = Mcap {
+        writer,
+        frames: frames(plan.axes),
+        shapes: shapes(plan, tables),
+        channels: Vec::new(),
+        held: [0.0; 3],
+        bytes: Vec::with_capacity(512),
+    };
+    mcap.announce()?;
+    Ok(Box::new(mcap))
+}
+
+/// What a table's rows become.
+#[derive(Clone, Copy, PartialEq)]
+enum Shape {
+    /// Exact attitude, rate and force; the field on a topic of its own.
+    Truth,
+    /// A gyroscope that waits for the accelerometer's row of the same time.
+    Held,
+    /// An accelerometer together with the gyroscope that waits.
+    Both,
+    Gyro,
+    Accel,
+    Mag,
+    Attitude(&'static str),
+}
+
+impl Shape {
+    /// The topics, each with its message.
+    fn topics(self) -> Vec<(&'static str, Kind)> {
+        match self {
+            Shape::Truth => vec![("/truth", Kind::Imu), ("/truth/mag", Kind::MagneticField)],
+            Shape::Held => vec![],
+            Shape::Both => vec![("/imu/data_raw", Kind::Imu)],
+            Shape::Gyro => vec![("/imu/gyro", Kind::Imu)],
+            Shape::Accel => vec![("/imu/accel", Kind::Imu)],
+            Shape::Mag => vec![("/imu/mag", Kind::MagneticField)],
+            Shape::Attitude("estimate") => vec![("/estimate", Kind::Quaternion)],
+            Shape::Attitude(_) => vec![("/reference", Kind::Quaternion)],
+        }
+    }
+}
+
+/// The shape of each table's rows.
+fn shapes(plan: &Plan, tables: &[Table]) -> Vec<Shape> {
+    let find = |kind| plan.sensors.iter().find(|sensor| sensor.kind == kind);
+    let ticks = |sensor: &SensorPlan| (sensor.rate, sensor.phase);
+    let (gyro, accel) = (find(SensorKind::Gyro).map(ticks), find(SensorKind::Accel).map(ticks));
+    let together = gyro.is_some() && gyro == accel;
+    let sensor = |sensor: &SensorPlan| match (sensor.kind, together) {
+        (SensorKind::Gyro, true) => Shape::Held,
+        (SensorKind::Gyro, false) => Shape::Gyro,
+        (SensorKind::Accel, true) => Shape::Both,
+        (SensorKind::Accel, false) => Shape::Accel,
+        (SensorKind::Mag, _) => Shape::Mag,
+    };
+    let readings = plan.sensors.iter().map(sensor);
+    let others = tables[TRUTH + 1 + plan.sensors.len()..].iter().map(|table| Shape::Attitude(table.name));
+    [Shape::Truth].into_iter().chain(readings).chain(others).collect()
+}
+
+/// What the messages call nav and body axes; without more said, ROS takes them as East-North-Up and Forward-Left-Up.
+fn frames(axes: Axes) -> [&'static str; 2] {
+    match axes {
+        Axes::EnuFlu => ["map", "imu_link"],
+        Axes::NedFrd => ["map_ned", "imu_link_frd"],
+    }
+}
+
+struct Mcap {
+    writer: ::mcap::Writer<Sink>,
+    /// Nav and body.
+    frames: [&'static str; 2],
+    shapes: Vec<Shape>,
+    /// Channels of each table, each with the number of its next message.
+    channels: Vec<Vec<(u16, u32)>>,
+    /// The gyroscope's reading that waits.
+    held: [f64; 3],
+    bytes: Vec<u8>,
+}
+
+impl Mcap {
+    /// Every topic, before its first message.
+    fn announce(&mut self) -> Result<(), DatasetError> {
+        for shape in &self.shapes {
+            let mut channels = Vec::new();
+            for (topic, kind) in shape.topics() {
+                let (name, definition) = kind.schema();
+                let schema =
+                    self.writer.add_schema(name, "ros2msg", definition.as_bytes()).map_err(failed)?;
+                let channel = self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new());
+                channels.push((channel.map_err(failed)?, 0));
+            }
+            self.channels.push(channels);
+        }
+        Ok(())
+    }
+
+    /// Sends what stands in `bytes`.
+    fn send(&mut self, table: usize, topic: usize, t: SimTime) -> Result<(), DatasetError> {
+        let (channel_id, sequence) = self.channels[table][topic];
+        self.channels[table][topic].1 = sequence.wrapping_add(1);
+        // A scene begins at 0.
+        let time = t.0.unsigned_abs();
+        let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
+        self.writer.write_to_known_channel(&header, &self.bytes).map_err(failed)
+    }
+}
+
+impl Writer for Mcap {
+    fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError> {
+        let [nav, body] = self.frames;
+        let in_body = Stamped { t, frame: body };
+        let triple = |at: usize| -> [f64; 3] { std::array::from_fn(|axis| values[at + axis]) };
+        let first: [f64; 3] = triple(0);
+        let bytes = &mut self.bytes;
+        match self.shapes[table] {
+            Shape::Held => {
+                self.held = first;
+                return Ok(());
+            }
+            Shape::Truth => {
+                let attitude = std::array::from_fn(|i| values[i]);
+                let all = Imu { attitude: Some(attitude), rate: Some(triple(7)), force: Some(triple(10)) };
+                imu(in_body, &all, bytes);
+                self.send(table, 0, t)?;
+                magnetic_field(in_body, triple(13), &mut self.bytes);
+                return self.send(table, 1, t);
+            }
+            Shape::Both => {
+                imu(in_body, &Imu { attitude: None, rate: Some(self.held), force: Some(first) }, bytes)
+            }
+            Shape::Gyro => imu(in_body, &Imu { attitude: None, rate: Some(first), force: None }, bytes),
+            Shape::Accel => imu(in_body, &Imu { attitude: None, rate: None, force: Some(first) }, bytes),
+            Shape::Mag => magnetic_field(in_body, first, bytes),
+            Shape::Attitude(_) => {
+                quaternion(Stamped { t, frame: nav }, std::array::from_fn(|i| values[i]), bytes)
+            }
+        }
+        self.send(table, 0, t)
+    }
+
+    fn finish(mut self: Box<Self>, _: &[u64]) -> Result<Vec<Written>, DatasetError> {
+        self.writer.finish().map_err(failed)?;
+        let rows = self.channels.iter().flatten().map(|(_, sent)| u64::from(*sent)).sum();
+        self.writer.into_inner().close()?;
+        Ok(vec![Written { name: FILE.into(), rows, columns: Vec::new() }])
+    }
+}
+
+fn failed(error: McapError) -> DatasetError {
+    DatasetError::Content { place: FILE.into(), problem: format!("cannot be written: {error}") }
+}
