@@ -83,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     };
     let (outcome, received) = play(job, &plan, demonstration)?;
     fill(&mut report, &outcome, arguments.speed);
+    report.faults = plan.faults_until(outcome.played);
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
@@ -193,6 +194,7 @@ fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         seed: plan.seed,
         duration_s: 0.0,
         speed: Value::Null,
+        faults: plan.faults_until(SimTime::FOREVER),
         host: host(false, false),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),
