@@ -24,7 +24,7 @@ pub struct Moment<'a> {
     pub t: SimTime,
     /// The exact truth then.
     pub truth: &'a Truth,
-    /// One reading a sensor due.
+    /// One reading a sensor due, but for those that a fault withholds.
     pub readings: &'a [Reading],
 }
 
@@ -131,7 +131,9 @@ impl<'a> Player<'a> {
         for (due, truth) in self.due.iter().zip(&self.truth) {
             readings.clear();
             for (i, channel) in self.channels.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1) {
-                readings.push(channel.reading(i, at[i]));
+                if !channel.block.missing.get(at[i]).is_some_and(|&missing| missing) {
+                    readings.push(channel.reading(i, at[i]));
+                }
                 at[i] += 1;
             }
             each(Moment { t: due.t, truth, readings: &readings })?;

@@ -35,6 +35,8 @@ pub struct Report {
     pub stretched_s: f64,
     /// Scene seconds a second, or `max`.
     pub speed: serde_json::Value,
+    /// The faults of sensors that acted: `gyro stuck from 2 s to 3 s`.
+    pub faults: Vec<String>,
     /// What it ran on.
     pub host: Host,
     /// Each sensor, counts summed over links.

@@ -11,6 +11,7 @@ pub mod builtin;
 mod columns;
 pub mod document;
 mod draw;
+mod faults;
 mod file;
 mod fixed_keys;
 mod kalibr;
@@ -117,6 +118,16 @@ impl Plan {
         }
     }
 
+    /// The faults that acted on a sample before `end`: `gyro stuck from 2 s to 3 s`.
+    pub fn faults_until(&self, end: SimTime) -> Vec<String> {
+        let of = |sensor: &SensorPlan| {
+            let before = |t: SimTime| sensor.clock().ticks_before(sensor.phase, t);
+            let acted = sensor.faults.iter().filter(|fault| before(fault.start) < before(fault.end.min(end)));
+            acted.map(|fault| format!("{} {fault}", sensor.kind)).collect::<Vec<_>>()
+        };
+        self.sensors.iter().flat_map(of).collect()
+    }
+
     /// The scene as resolved, lasting until `end`, with the reference as it was settled: playing it gives the bytes of
     /// a run that ended there.
     pub fn resolved_until(&self, end: SimTime, reference: Option<&Reference>) -> String {
@@ -176,12 +187,13 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     let earth = vehicle::earth(&top);
     let motions = vehicle::motions(&top, earth.gravity.length(), &mut start);
     let forces = vehicle::forces(&top);
-    let sensors = sensors::sensors(&top);
+    let mut sensors = sensors::sensors(&top);
     let outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
     let trajectory =
         Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
     let reference =
         reference::reference(&top, sensors.complete.then_some(&sensors.plans), &trajectory).unzip();
+    let faults = faults::faults(&top, &mut sensors.plans);
     let moving = trajectory.moving_until();
     let default = (moving > SimTime::ZERO).then(|| moving.to_string());
     // What differs from run to run is the business of whoever makes several.
@@ -205,7 +217,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     for (key, table) in [("start", start.resolved), ("earth", earth.resolved)] {
         resolved.insert(key.into(), table.into());
     }
-    for (key, tables) in [("motion", motions.resolved), ("force", forces.resolved)] {
+    for (key, tables) in [("motion", motions.resolved), ("force", forces.resolved), ("fault", faults)] {
         if !tables.is_empty() {
             resolved.insert(key.into(), tables.into());
         }

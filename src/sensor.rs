@@ -12,6 +12,7 @@ mod bias_walk;
 pub mod block;
 mod clock_error;
 mod delay;
+pub mod fault;
 mod filter;
 mod flicker;
 mod g_sensitivity;
@@ -37,6 +38,7 @@ pub use bias_walk::step as bias_step;
 pub use block::{Block, Column};
 pub use clock_error::{clock, jitter};
 pub use delay::delay;
+pub use fault::{Fault, FaultKind};
 pub use lever_arm::{at_arm, lever_arm};
 pub use matrix::matrix;
 pub use mount::Mount;
@@ -124,6 +126,8 @@ pub struct SensorPlan {
     pub part: Option<&'static str>,
     /// The values of its error terms' keys.
     pub values: Values,
+    /// What it does wrong for a while, in the order written.
+    pub faults: Vec<Fault>,
 }
 
 impl SensorPlan {
@@ -278,6 +282,9 @@ pub fn check(plan: &SensorPlan, seed: u64) -> Vec<KeyError> {
     TERMS.iter().filter_map(|term| (term.build)(&plan.values, &plan.context(seed)).err()).collect()
 }
 
+/// What every fault is called among the terms.
+const FAULT: &str = "fault";
+
 /// A sensor at work: the terms its scene uses.
 #[derive(Default)]
 pub struct Sensor {
@@ -314,6 +321,12 @@ impl Sensor {
                 }
             }
         }
+        let faults = plan.faults.iter().filter(|_| !left_out.contains(&FAULT)).enumerate();
+        for (index, fault) in faults {
+            sensor.names.push(FAULT);
+            let range = plan.values.scalar("range");
+            sensor.readings.push(fault.term(index, range, &plan.context(seed)));
+        }
         Ok(sensor)
     }
 
@@ -338,6 +351,7 @@ impl Sensor {
         block.clipped.clear();
         block.clipped.resize(n, false);
         block.temperature.clear();
+        block.missing.clear();
         for (reading, truth) in block.reading.iter_mut().zip(&block.truth) {
             reading.clear();
             reading.extend_from_slice(truth);
@@ -365,6 +379,8 @@ impl Sensor {
 
 #[cfg(test)]
 mod dynamics_tests;
+#[cfg(test)]
+mod fault_tests;
 #[cfg(test)]
 mod parts_tests;
 #[cfg(test)]

@@ -92,6 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     };
     let (outcome, received) = play(job, &plan, demonstration)?;
     fill(&mut report, &outcome, arguments.speed);
+    report.faults = plan.faults_until(outcome.played);
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
@@ -240,6 +241,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         duration_s: 0.0,
         stretched_s: 0.0,
         speed: Value::Null,
+        faults: plan.faults_until(SimTime::FOREVER),
         host: host(false, false, Some(PacingReport::default())),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),

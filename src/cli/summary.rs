@@ -45,6 +45,9 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             score.samples,
         );
     }
+    for fault in &report.faults {
+        text += &format!("fault: {fault}\n");
+    }
     for failure in &report.failed {
         text += &format!("FAILED: {failure}\n");
     }

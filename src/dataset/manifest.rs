@@ -57,7 +57,7 @@ struct Manifest<'a> {
     sensors: Vec<SensorEntry>,
     parts: BTreeMap<&'static str, &'static str>,
     drawn: &'a [Drawn],
-    faults: [String; 0],
+    faults: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     run: Option<&'a Run>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -116,10 +116,10 @@ pub(super) fn text(
         duration_ns: end.0,
         complete: true,
         conventions: readme::conventions(plan),
-        sensors: sensors(plan, end, clipped),
+        sensors: sensors(plan, files, clipped),
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
-        faults: [],
+        faults: plan.faults_until(end),
         run,
         reference: quality,
         files,
@@ -129,7 +129,12 @@ pub(super) fn text(
     Ok(text.map_err(DatasetError::io("write", Path::new("manifest.json")))? + "\n")
 }
 
-fn sensors(plan: &Plan, end: SimTime, clipped: &[u64]) -> Vec<SensorEntry> {
+/// Whether a file holds a sensor's samples.
+fn is_of(sensor: &SensorPlan, file: &FileEntry) -> bool {
+    file.name.split('.').next() == Some(sensor.kind.name())
+}
+
+fn sensors(plan: &Plan, files: &[FileEntry], clipped: &[u64]) -> Vec<SensorEntry> {
     let entry = |(sensor, &clipped): (&SensorPlan, &u64)| SensorEntry {
         name: sensor.kind.name(),
         unit: sensor.kind.unit(),
@@ -139,7 +144,7 @@ fn sensors(plan: &Plan, end: SimTime, clipped: &[u64]) -> Vec<SensorEntry> {
         sampling: sampling_name(sensor.sampling),
         mount: sensor.mount.map(|mount| mount.to_string()),
         terms: plan.build(sensor).terms().to_vec(),
-        samples: sensor.clock().ticks_before(sensor.phase, end),
+        samples: files.iter().find(|file| is_of(sensor, file)).map_or(0, |file| file.rows),
         clipped,
     };
     plan.sensors.iter().zip(clipped).map(entry).collect()

@@ -656,3 +656,19 @@ fn a_log_that_changed_since_it_was_read_is_not_copied() {
     assert!(error.starts_with("cannot copy ") && error.contains("log.csv: it has changed since"), "{error}");
     assert!(!home.path().join("out").exists());
 }
+
+/// Without half a second of samples at 100 Hz, the rows say what there is and the manifest what went wrong.
+#[test]
+fn a_fault_is_told_and_its_missing_samples_are_not_counted() {
+    let text = "duration = \"2 s\"\n[gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"50 Hz\"\n[[fault]]\nsensor = \"gyro\"\nkind = \"off\"\nstart = \"1 s\"\nduration = \"0.5 s\"\n[[fault]]\nsensor = \"accel\"\nkind = \"wrong\"\nstart = \"9 s\"\n";
+    let plan = Plan::parse(text, "s", "s", &[]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    write_to(&plan, plan.duration, &out, false).unwrap();
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("manifest.json")).unwrap()).unwrap();
+    assert_eq!(json["faults"], serde_json::json!(["gyro off from 1 s to 1.5 s"]), "the other had not begun");
+    assert_eq!((&json["sensors"][0]["samples"], &json["sensors"][1]["samples"]), (&150.into(), &100.into()));
+    let rows = fs::read_to_string(out.join("gyro.csv")).unwrap().lines().count();
+    assert_eq!(rows, 151);
+}

@@ -31,6 +31,22 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("force", "duration", "how long it acts"),
     ("force", "acceleration", "a vector in `frame`"),
     ("force", "frame", "\"body\" (default) or \"nav\""),
+    ("fault", "sensor", "\"gyro\", \"accel\" or \"mag\""),
+    (
+        "fault",
+        "kind",
+        "\"off\", \"stuck\", \"garbage\", \"wrong\", \"slow\", \"delayed\", \"intermittent\", \"spike\", \"step\" or \"ramp\"",
+    ),
+    ("fault", "start", "when it begins"),
+    ("fault", "duration", "how long it lasts (default: to the end)"),
+    (
+        "fault",
+        "size",
+        "of `spike`, `step`, `ramp`: what is added; of `garbage`: its bound (default the range)",
+    ),
+    ("fault", "share", "of `spike` and `intermittent`: how many of the samples"),
+    ("fault", "every", "of `slow`: one sample in so many (default 10)"),
+    ("fault", "delay", "of `delayed`: how old a reading is"),
     (
         "reference",
         "from",

@@ -61,7 +61,8 @@ fn sensor(
         return None;
     }
     let any_rate = rate.unwrap_or(Rate::hz(1));
-    let mut plan = SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values };
+    let faults = Vec::new();
+    let mut plan = SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values, faults };
     section.settle_bias(&mut plan);
     let errors = sensor::check(&plan, seed);
     for error in &errors {

@@ -515,10 +515,20 @@ fn every_key_that_is_listed_is_known() {
     for (table, key, _) in FIXED_KEYS {
         let table = match *table {
             "" => String::new(),
-            "motion" | "force" | "output" => format!("[[{table}]]"),
+            "motion" | "force" | "fault" | "output" => format!("[[{table}]]"),
             _ => format!("[{table}]"),
         };
-        let kind = if table == "[[motion]]" && *key != "kind" { "kind = \"hold\"\n" } else { "" };
+        let kind = match (table.as_str(), *key) {
+            ("[[motion]]", "kind") => "",
+            ("[[motion]]", _) => "kind = \"hold\"\n",
+            ("[[fault]]", "sensor") => "kind = \"off\"\n",
+            ("[[fault]]", "kind") => "sensor = \"gyro\"\n",
+            ("[[fault]]", "size" | "share") => "sensor = \"gyro\"\nkind = \"spike\"\n",
+            ("[[fault]]", "every") => "sensor = \"gyro\"\nkind = \"slow\"\n",
+            ("[[fault]]", "delay") => "sensor = \"gyro\"\nkind = \"delayed\"\n",
+            ("[[fault]]", _) => "sensor = \"gyro\"\nkind = \"off\"\n",
+            _ => "",
+        };
         let value = if ["pace", "force"].contains(key) { "1" } else { "true" };
         let bad = format!("{table}\n{kind}{key} = {value}\n");
         let rest: String =

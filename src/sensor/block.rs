@@ -28,6 +28,8 @@ pub struct Block {
     pub reading: Columns,
     /// Whether the reading left the range.
     pub clipped: Vec<bool>,
+    /// Which samples a fault withholds; empty where there is none.
+    pub missing: Vec<bool>,
     /// The true specific force at the time of sensing, m/s²; empty unless a term needs [`Column::Force`].
     pub force: Columns,
     /// The error-free reading at the time of sensing; empty unless a term needs [`Column::Late`].
@@ -63,6 +65,7 @@ impl Block {
             columns.iter_mut().for_each(Vec::clear);
         }
         self.clipped.clear();
+        self.missing.clear();
         self.temperature.clear();
     }
 

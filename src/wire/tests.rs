@@ -441,6 +441,7 @@ proptest! {
             mount: None,
             part: None,
             values: Default::default(),
+            faults: Vec::new(),
         });
         let sensors: Vec<_> = SensorKind::ALL.into_iter().zip(ticks).filter_map(sensor).collect();
         let options = Options { layout };
