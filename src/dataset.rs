@@ -42,7 +42,7 @@ pub use folder::{Folder, Sink};
 pub use format::{FEATURES, FORMATS, Format, Open, Writer, Written};
 pub use manifest::FileEntry;
 pub use reference::{Errors, Quality};
-pub use runs::{Made, Run, RunOptions, Shard, write_runs};
+pub use runs::{Extra, Made, Run, RunOptions, Shard, write_runs};
 pub use table::{Column, Table};
 
 use crate::geometry::Attitude;

@@ -75,6 +75,8 @@ fn others() -> impl Iterator<Item = &'static Format> {
 fn read(python: &str, folder: &Path) -> Value {
     let mut command = Command::new(python);
     command.arg(READER).arg(folder).args(others().map(|format| format.name));
+    // evo keeps settings at home.
+    command.env("HOME", folder);
     let output = command.stderr(Stdio::inherit()).output().expect("the reader starts");
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{}: {said}", output.status);

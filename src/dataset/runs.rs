@@ -63,6 +63,9 @@ pub struct Run {
     pub swept: Vec<SweptValue>,
 }
 
+/// Makes the further files of a run: a plain name and the contents of each.
+pub type Extra<'a> = &'a (dyn Fn(&Plan) -> Vec<(String, Vec<u8>)> + Sync);
+
 /// How runs are made.
 pub struct RunOptions<'a> {
     /// How many there are in all.
@@ -74,7 +77,7 @@ pub struct RunOptions<'a> {
     /// In which formats.
     pub formats: Vec<&'static Format>,
     /// Further files of a run, such as figures.
-    pub extra: &'a (dyn Fn(&Plan) -> Vec<(String, Vec<u8>)> + Sync),
+    pub extra: Extra<'a>,
     /// How many at a time.
     pub threads: usize,
     /// Told how many of how many are done.
