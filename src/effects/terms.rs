@@ -24,14 +24,18 @@ pub(super) static MATRIX: EffectKind = EffectKind {
     },
 };
 
-/// Non-linearity: its greatest deviation, at half of full scale and at full scale.
+/// Non-linearity n of full scale R: `n·R·(4u³ − 3u)`, u = signal/R, where that is largest.
 pub(super) static NONLINEARITY: EffectKind = EffectKind {
     name: "nonlinearity",
     judge: Judge::Both,
     find: |survey| {
         let values = &survey.sensor.values;
-        let size = values.vector("nonlinearity")?.abs() * values.scalar("range")?;
-        used(survey, "nonlinearity", size, "at most, at half and at full scale")
+        let (bend, range) = (values.vector("nonlinearity")?, values.scalar("range")?);
+        let size = survey.largest(|look| {
+            let u = (survey.error_free(look).v / range).clamp(DVec3::NEG_ONE, DVec3::ONE);
+            bend * range * (4.0 * u * u * u - 3.0 * u)
+        });
+        used(survey, "nonlinearity", size, "largest")
     },
 };
 
