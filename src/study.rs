@@ -1,10 +1,11 @@
 //! Every method against every motion: how accurate, at what cost, and where it fails.
 //!
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
-//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost. All give rows for a table; time
+//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory. All give rows for a table; time
 //! comes in as an argument.
 
 pub mod accuracy;
+pub mod allan;
 pub mod cost;
 mod inputs;
 pub mod motions;

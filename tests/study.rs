@@ -53,7 +53,16 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
     let text = String::from_utf8(done.get_output().stdout.clone()).unwrap();
     assert!(text.contains("coning") && text.contains("magnus-4"), "{text}");
 
-    let names = ["accuracy.csv", "accuracy.svg", "cost.csv", "cost.svg", "stability.csv", "stability.svg"];
+    let names = [
+        "accuracy.csv",
+        "accuracy.svg",
+        "allan.csv",
+        "allan.svg",
+        "cost.csv",
+        "cost.svg",
+        "stability.csv",
+        "stability.svg",
+    ];
     assert_eq!(files(&out), names.map(String::from).into());
     let (accuracy, stability) = (out.join("accuracy.csv"), out.join("stability.csv"));
     let columns = [
@@ -112,11 +121,11 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
     for (arguments, says) in [
         (
             &["acuracy"][..],
-            "`acuracy` is neither a study (accuracy, stability, cost, all) nor a scene, built in or a file; did you mean `accuracy`?",
+            "`acuracy` is neither a study (accuracy, stability, cost, allan, all) nor a scene, built in or a file; did you mean `accuracy`?",
         ),
         (
             &["acuracy", "coning"],
-            "`acuracy` is no study (accuracy, stability, cost, all); did you mean `accuracy`?",
+            "`acuracy` is no study (accuracy, stability, cost, allan, all); did you mean `accuracy`?",
         ),
         (&["coning", "still"], "`coning` is a scene, and so `still` is one too many"),
         (&["accuracy", "nowhere.toml"], "neither a scene file"),

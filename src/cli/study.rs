@@ -10,7 +10,7 @@ use crate::motion::Trajectory;
 use crate::scene::{Plan, builtin, nearest};
 use crate::study::motions::{self, Case, OfTrajectory};
 use crate::study::stability::Effort;
-use crate::study::{accuracy, all_cores, cost, stability};
+use crate::study::{accuracy, all_cores, allan, cost, stability};
 use clap::ValueEnum;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// accuracy, stability, cost or all, which is the default; or the scene at once
+    /// accuracy, stability, cost, allan or all, which is the default; or the scene at once
     study: Option<String>,
     /// A TOML file or the name of a built-in scene: its motion joins the built-in ones, and its samples are what costs
     scene: Option<String>,
@@ -44,6 +44,8 @@ enum What {
     Stability,
     /// What a scene's samples cost as its error terms are added
     Cost,
+    /// The Allan deviation of a scene's sensors beside theory
+    Allan,
     /// Each of them
     All,
 }
@@ -59,9 +61,11 @@ struct Results {
     stability: Option<Vec<stability::Row>>,
     #[serde(skip_serializing_if = "Option::is_none", flatten)]
     cost: Option<cost::Cost>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    allan: Option<Vec<allan::Point>>,
 }
 
-/// The scene whose cost is studied where none is given.
+/// The scene whose cost and noise are studied where none is given.
 const COST_SCENE: &str = "full-mpu9250";
 
 pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
@@ -163,6 +167,8 @@ fn run(what: What, quick: bool, cases: &[Case], costly: &Plan) -> Results {
             let start = Instant::now();
             cost::run(costly, effort, &|| start.elapsed())
         }),
+        allan: wanted(What::Allan)
+            .then(|| allan::run(costly, if quick { allan::Effort::QUICK } else { allan::Effort::FULL })),
     }
 }
 
@@ -181,6 +187,10 @@ fn files(results: &Results, cases: &[Case]) -> Result<Vec<(&'static str, Vec<u8>
         files.push(("cost.csv", csv(&cost.terms)?));
         files.push(("cost.svg", charts::cost(cost).into_bytes()));
     }
+    if let Some(points) = &results.allan {
+        files.push(("allan.csv", csv(points)?));
+        files.push(("allan.svg", charts::allan(points).into_bytes()));
+    }
     Ok(files)
 }
 
@@ -197,7 +207,8 @@ fn text(results: &Results, cases: &[Case]) -> String {
     let accuracy = results.accuracy.as_ref().map(|rows| tables::accuracy(rows, cases));
     let stability = results.stability.as_ref().map(|rows| tables::stability(rows));
     let cost = results.cost.as_ref().map(tables::cost);
-    accuracy.into_iter().chain(stability).chain(cost).collect::<Vec<_>>().join("\n")
+    let allan = results.allan.as_ref().map(|points| tables::allan(points));
+    accuracy.into_iter().chain(stability).chain(cost).chain(allan).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]
@@ -229,6 +240,7 @@ mod tests {
             accuracy: Some(vec![row("paper", 100, Some(1e-3)), row("coning-2", 100, None)]),
             stability: Some(vec![failed]),
             cost: None,
+            allan: None,
         }
     }
 

@@ -5,6 +5,7 @@ use crate::motion::method::METHODS;
 use crate::report::chart::{self, Cell, Grid, LogLog};
 use crate::report::number;
 use crate::study::accuracy;
+use crate::study::allan;
 use crate::study::cost::Cost;
 use crate::study::motions::Case;
 use crate::study::stability::{self, CASES, Verdict};
@@ -100,4 +101,50 @@ pub fn cost(cost: &Cost) -> String {
         bars: bars.collect(),
         line: cost.floor_samples_per_s.map(|floor| ("its normal numbers alone".into(), 1e9 / floor)),
     })
+}
+
+/// A picture a sensor: three axes with their bands, and theory.
+pub fn allan(points: &[allan::Point]) -> String {
+    let mut sensors: Vec<_> = points.iter().map(|point| point.sensor).collect();
+    sensors.dedup();
+    let picture = |sensor: &&str| {
+        let of = |axis: &str| -> Vec<&allan::Point> {
+            points.iter().filter(|point| point.sensor == *sensor && point.axis == axis).collect()
+        };
+        let measured = |axis: &&str| {
+            let of = of(axis);
+            // Two standard errors of neighbours that share an average.
+            let band = |point: &&allan::Point| {
+                let share = 2.0 * libm::sqrt(1.5 / (2.0 * point.differences as f64));
+                (point.tau_s, point.deviation * (1.0 - share).max(0.01), point.deviation * (1.0 + share))
+            };
+            chart::Curve {
+                name: axis.to_string(),
+                kind: chart::CurveKind::Measured,
+                points: of.iter().map(|point| (point.tau_s, point.deviation)).collect(),
+                band: of.iter().map(band).collect(),
+            }
+        };
+        let theory = |axis: &&str| chart::Curve {
+            name: format!("theory {axis}"),
+            kind: chart::CurveKind::Theory,
+            points: of(axis).iter().map(|point| (point.tau_s, point.theory)).collect(),
+            band: Vec::new(),
+        };
+        let axes = ["x", "y", "z"];
+        let same = |axis: &str| of(axis).iter().zip(of("x")).all(|(a, b)| a.theory == b.theory);
+        let theories = axes.iter().filter(|axis| **axis == "x" || !same(axis)).map(theory);
+        chart::curves(&chart::Curves {
+            title: format!("Allan deviation of the {sensor}"),
+            subtitle:
+                "of reading less error-free reading; theory of white noise, counts, walk and wandering bias"
+                    .into(),
+            x_label: "averaging time τ (s)".into(),
+            y_label: format!("Allan deviation ({})", allan::unit(sensor)),
+            linear: false,
+            band: "95 % confidence".into(),
+            curves: axes.iter().map(measured).chain(theories).collect(),
+        })
+    };
+    chart::stacked(&sensors.iter().map(picture).collect::<Vec<_>>())
 }

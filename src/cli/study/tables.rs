@@ -3,6 +3,7 @@
 use crate::motion::method::{Input, METHODS, find};
 use crate::report::{number, table};
 use crate::study::accuracy;
+use crate::study::allan;
 use crate::study::cost::Cost;
 use crate::study::motions::Case;
 use crate::study::stability::{self, CASES, Verdict};
@@ -143,4 +144,28 @@ pub fn cost(cost: &Cost) -> String {
         millions(cost.nine_axis_samples_per_s),
         cost.scene,
     )
+}
+
+/// Measured and expected deviations nearest to round averaging times, the mean of the three axes.
+pub fn allan(points: &[allan::Point]) -> String {
+    const TAUS: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
+    let mut sensors: Vec<_> = points.iter().map(|point| point.sensor).collect();
+    sensors.dedup();
+    let cell = |sensor: &str, tau: f64| {
+        let far = |point: &allan::Point| libm::log2(point.tau_s / tau).abs();
+        let of = || points.iter().filter(|point| point.sensor == sensor && far(point) <= 0.5);
+        let mean = |pick: fn(&allan::Point) -> f64| of().map(pick).sum::<f64>() / of().count() as f64;
+        match of().count() {
+            0 => "-".to_string(),
+            _ => {
+                format!("{} ({})", number(mean(|point| point.deviation)), number(mean(|point| point.theory)))
+            }
+        }
+    };
+    let rows = sensors.iter().map(|sensor| {
+        let cells = TAUS.iter().map(|&tau| cell(sensor, tau));
+        [sensor.to_string(), allan::unit(sensor).to_string()].into_iter().chain(cells).collect()
+    });
+    let text = table(&["sensor", "unit", "about 0.1 s", "1 s", "10 s", "100 s"], &rows.collect::<Vec<_>>());
+    format!("Allan deviation, and by theory\n{text}")
 }
