@@ -65,7 +65,9 @@ struct Results {
     allan: Option<Vec<allan::Point>>,
 }
 
-/// The scene whose cost and noise are studied where none is given.
+/// The scene whose noise is studied where none is given: at rest, nothing but noise is in the readings.
+const NOISE_SCENE: &str = "still";
+/// The scene whose cost is studied where none is given.
 const COST_SCENE: &str = "full-mpu9250";
 
 pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
@@ -75,11 +77,11 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
         dataset::may_write(dir, arguments.force)?;
     }
     let cases = cases(plan.as_ref(), arguments.quick)?;
-    let costly = match &plan {
-        Some(plan) => plan,
-        None => &Plan::load(COST_SCENE, &[])?,
+    let (costly, noisy) = match &plan {
+        Some(plan) => (plan, plan),
+        None => (&Plan::load(COST_SCENE, &[])?, &Plan::load(NOISE_SCENE, &[])?),
     };
-    let results = run(what, arguments.quick, &cases, costly);
+    let results = run(what, arguments.quick, &cases, costly, noisy);
     if let Some(dir) = &arguments.out {
         dataset::put_all(dir, arguments.force, &files(&results, &cases)?)?;
         eprintln!("{}: written", dir.display());
@@ -142,7 +144,7 @@ fn asked(arguments: &Arguments) -> Result<(What, Option<&str>), Refusal> {
     }))
 }
 
-fn run(what: What, quick: bool, cases: &[Case], costly: &Plan) -> Results {
+fn run(what: What, quick: bool, cases: &[Case], costly: &Plan, noisy: &Plan) -> Results {
     let wanted = |study| what == What::All || what == study;
     let threads = all_cores();
     Results {
@@ -168,7 +170,7 @@ fn run(what: What, quick: bool, cases: &[Case], costly: &Plan) -> Results {
             cost::run(costly, effort, &|| start.elapsed())
         }),
         allan: wanted(What::Allan)
-            .then(|| allan::run(costly, if quick { allan::Effort::QUICK } else { allan::Effort::FULL })),
+            .then(|| allan::run(noisy, if quick { allan::Effort::QUICK } else { allan::Effort::FULL })),
     }
 }
 
