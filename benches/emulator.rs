@@ -53,7 +53,13 @@ fn samples(criterion: &mut Criterion) {
 fn packets(criterion: &mut Criterion) {
     let plan = plan("still");
     let readings = readings(&plan);
-    let setup = Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: Options::default() };
+    let setup = Setup {
+        sensors: &plan.sensors,
+        axes: plan.axes,
+        day: plan.day,
+        options: Options::default(),
+        peer: Default::default(),
+    };
     let mut group = criterion.benchmark_group("packet");
     for protocol in Protocol::ALL {
         let encode = || {

@@ -64,9 +64,15 @@ pub enum SensorKind {
     Mag,
 }
 
+/// One value for each kind of sensor, by `kind as usize`.
+pub type ByKind<T> = [T; SensorKind::COUNT];
+
 impl SensorKind {
+    /// How many kinds there are.
+    pub const COUNT: usize = 3;
+
     /// Every kind, in order.
-    pub const ALL: [SensorKind; 3] = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag];
+    pub const ALL: ByKind<SensorKind> = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag];
 
     /// As scenes, reports and files call it.
     pub const fn name(self) -> &'static str {

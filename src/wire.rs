@@ -1,10 +1,10 @@
 //! Readings to packets: the only room that knows both the sensors and the protocols.
 //!
-//! Each protocol is one file with an [`Encoder`]; what comes back is decoded in `answer`. Conversion from the
+//! Each protocol is one file with an [`Encoder`]; what comes back is the business of `dialogue`. Conversion from the
 //! program's axes (Forward-Right-Down, SI, µT) to a protocol's own happens here and nowhere else.
 //! To add a protocol: one file in the `protocols` crate, one beside this one, and one line in [`Protocol`].
 
-pub mod answer;
+pub mod dialogue;
 mod mavlink;
 mod mpu;
 pub mod samples;
@@ -13,8 +13,9 @@ mod text;
 use crate::earth::Day;
 use crate::geometry::{Axes, Body, Vector};
 use crate::schedule::{Schedule, Ticks};
-use crate::sensor::{Reading, SensorKind, SensorPlan};
+use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
+use dialogue::Peer;
 
 /// The longest packet of any protocol, bytes.
 pub const MAX_PACKET: usize = 232;
@@ -28,7 +29,7 @@ pub struct Packet {
     /// Bit i is set when it carries a new sample of the sensor of kind i.
     pub carries: u8,
     /// Samples of each kind that a newer one replaced before any packet carried them.
-    pub replaced: [u32; 3],
+    pub replaced: ByKind<u32>,
     len: u16,
     bytes: [u8; MAX_PACKET],
 }
@@ -38,7 +39,8 @@ impl Packet {
     pub fn new(due: SimTime, carries: u8, bytes: &[u8]) -> Packet {
         debug_assert!(bytes.len() <= MAX_PACKET, "{} bytes", bytes.len());
         let len = bytes.len().min(MAX_PACKET);
-        let mut packet = Packet { due, carries, replaced: [0; 3], len: len as u16, bytes: [0; MAX_PACKET] };
+        let mut packet =
+            Packet { due, carries, replaced: ByKind::default(), len: len as u16, bytes: [0; MAX_PACKET] };
         packet.bytes[..len].copy_from_slice(&bytes[..len]);
         packet
     }
@@ -96,11 +98,26 @@ pub enum Layout {
     Burst,
 }
 
-/// How a protocol lays its packets out.
+/// A flight controller that wants a protocol spoken its own way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Controller {
+    /// PX4 on its board, in HITL: time is arrival.
+    Px4,
+    /// PX4 as a program, in lockstep.
+    Px4Sitl,
+    /// ArduPilot with an external AHRS.
+    Ardupilot,
+    /// INAV with its HITL simulator message.
+    Inav,
+}
+
+/// How a protocol lays its packets out, and whom it talks to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// For `mpu`; `None` is burst where the rates are equal, else separate.
     pub layout: Option<Layout>,
+    /// Whose ways the protocol keeps to.
+    pub controller: Option<Controller>,
 }
 
 /// What an encoder needs to know of the scene.
@@ -114,6 +131,8 @@ pub struct Setup<'a> {
     pub day: Option<Day>,
     /// How packets are laid out.
     pub options: Options,
+    /// What the conversation has brought to light of the other side.
+    pub peer: Peer,
 }
 
 /// Turns readings into packets, in order of time.
@@ -121,9 +140,12 @@ pub trait Encoder: Send {
     /// Appends the packets of the readings due at `t`, and whatever the protocol sends besides.
     fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>);
 
+    /// What the other side is left with, at the very end: appends the packets of a vehicle that has stopped at `t`.
+    fn farewell(&mut self, _t: SimTime, _out: &mut Vec<Packet>) {}
+
     /// Samples of each kind taken in that no packet has carried yet.
-    fn waiting(&self) -> [u64; 3] {
-        [0; 3]
+    fn waiting(&self) -> ByKind<u64> {
+        ByKind::default()
     }
 }
 
@@ -209,9 +231,9 @@ impl EverySecond {
 /// The newest sample of each sensor, for packets that carry several.
 #[derive(Debug, Default)]
 struct Newest {
-    values: [Option<Reading>; 3],
+    values: ByKind<Option<Reading>>,
     fresh: u8,
-    replaced: [u32; 3],
+    replaced: ByKind<u32>,
 }
 
 impl Newest {
@@ -226,14 +248,14 @@ impl Newest {
         }
     }
 
-    fn waiting(&self) -> [u64; 3] {
-        [0, 1, 2].map(|i| u64::from(self.fresh >> i & 1) + u64::from(self.replaced[i]))
+    fn waiting(&self) -> ByKind<u64> {
+        std::array::from_fn(|i| u64::from(self.fresh >> i & 1) + u64::from(self.replaced[i]))
     }
 
     /// A packet of these bytes that carries the fresh samples among `kinds`.
     fn packet(&mut self, due: SimTime, kinds: u8, bytes: &[u8]) -> Packet {
         let mut packet = Packet::new(due, self.fresh & kinds, bytes);
-        for i in (0..3).filter(|i| kinds >> i & 1 == 1) {
+        for i in (0..SensorKind::COUNT).filter(|i| kinds >> i & 1 == 1) {
             packet.replaced[i] = std::mem::take(&mut self.replaced[i]);
         }
         self.fresh &= !kinds;

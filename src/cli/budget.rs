@@ -30,8 +30,16 @@ impl Budget {
     /// Of one output of a plan that is played at `speed` scene seconds a second.
     pub fn of(plan: &Plan, output: &Output, speed: f64) -> Budget {
         let load = |sensors: &[SensorPlan], protocol: Protocol, options: wire::Options| {
-            let (bytes, packets) =
-                wire::load(protocol, &Setup { sensors, axes: plan.axes, day: plan.day, options });
+            let (bytes, packets) = wire::load(
+                protocol,
+                &Setup {
+                    sensors,
+                    axes: plan.axes,
+                    day: plan.day,
+                    options,
+                    peer: wire::dialogue::Peer::default(),
+                },
+            );
             (bytes * speed, packets * speed)
         };
         let (bytes_per_s, packets_per_s) = load(&plan.sensors, output.to.protocol, output.wire);
@@ -139,7 +147,7 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
         let mut others = Vec::new();
         let layouts = [(Layout::Separate, "separate"), (Layout::Burst, "burst")];
         for (layout, name) in layouts.into_iter().filter(|_| here == Protocol::Mpu) {
-            let options = wire::Options { layout: Some(layout) };
+            let options = wire::Options { layout: Some(layout), ..self.output.wire };
             if wire::check(here, &options, &self.plan.sensors).is_ok() {
                 others.push((format!("layout = \"{name}\""), self.bytes(here, options)));
             }

@@ -121,7 +121,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     }
     let to = section.text("to", None)?;
     let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
-    let wire = wire::Options { layout };
+    let wire = wire::Options { layout, controller: None };
     if layout.is_some() && to.protocol != Protocol::Mpu {
         section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
     }

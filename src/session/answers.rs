@@ -7,7 +7,11 @@ use crate::link::Receiver;
 use crate::scene::Plan;
 use crate::score::{AttitudeError, Scorer};
 use crate::time::SimTime;
-use crate::wire::{Protocol, answer::Listener};
+use crate::wire::Options;
+use crate::wire::{
+    Protocol,
+    dialogue::{self, Said, Stamp},
+};
 use bytes::BytesMut;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -45,8 +49,14 @@ pub(super) struct Ear {
 impl Ear {
     /// Reads one link until the other side leaves; what has no meaning here is read all the same, so that nothing
     /// stands in the other side's way.
-    pub(super) async fn listen(self, link: usize, protocol: Protocol, mut receiver: Receiver) {
-        let mut listener = Listener::new(protocol);
+    pub(super) async fn listen(
+        self,
+        link: usize,
+        protocol: Protocol,
+        options: Options,
+        mut receiver: Receiver,
+    ) {
+        let mut dialogue = dialogue::dialogue(protocol, options.controller);
         let mut buffer = BytesMut::with_capacity(4096);
         loop {
             buffer.clear();
@@ -54,17 +64,20 @@ impl Ear {
                 Ok(0) | Err(_) => return,
                 Ok(_) => {}
             }
-            let Some(listener) = &mut listener else { continue };
+            let Some(dialogue) = &mut dialogue else { continue };
             let now = self.clock.now();
             let mut heard = self.heard.borrow_mut();
-            listener.feed(&buffer, |estimate| {
-                let truth = self.plan.trajectory.at(estimate.t).attitude;
-                let error = AttitudeError::between(truth, estimate.attitude);
-                heard.scorer.add(error, self.delay_ms(now, estimate.t));
+            dialogue.hear(&buffer, now, &mut |said| {
+                let Said::Estimate(dialogue::Estimate { stamp: Stamp::Sample(t), attitude }) = said else {
+                    return;
+                };
+                let truth = self.plan.trajectory.at(t).attitude;
+                let error = AttitudeError::between(truth, attitude);
+                heard.scorer.add(error, self.delay_ms(now, t));
                 heard.newest_deg = Some(error.total.to_degrees());
-                heard.estimates.push((estimate.t, estimate.attitude));
+                heard.estimates.push((t, attitude));
             });
-            heard.damaged[link] = listener.damaged;
+            heard.damaged[link] = dialogue.damaged();
         }
     }
 

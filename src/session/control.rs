@@ -11,6 +11,7 @@ use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, co
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
 use crate::report::{LinkReport, PacingReport};
+use crate::sensor::ByKind;
 use crate::time::SimTime;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -239,6 +240,7 @@ impl Run {
             self.ears.push(tokio::task::spawn_local(ear.listen(
                 i,
                 self.job.outputs[i].to.protocol,
+                self.job.outputs[i].wire,
                 receiver,
             )));
         }
@@ -367,10 +369,11 @@ impl Run {
             (None, Some(child)) => command::end(child).await,
             (None, None) => None,
         };
-        let kinds = [0, 1, 2];
-        let sum = |rows: &[[u64; 3]]| kinds.map(|i| rows.iter().map(|row| row[i]).sum::<u64>());
+        let sum = |rows: &[ByKind<u64>]| -> ByKind<u64> {
+            std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum())
+        };
         let (total, waiting) = (sum(&made.samples), sum(&made.waiting));
-        let queued = kinds.map(|i| left.samples[i] + waiting[i]);
+        let queued = std::array::from_fn(|i| left.samples[i] + waiting[i]);
         let paced = self.job.speed != Speed::Max;
         let heard = self.heard.borrow();
         Ok(Outcome {
@@ -422,7 +425,7 @@ impl Run {
             memory_locked: false,
             pacing: None,
             watched: None,
-            sensors: tally::sensors(&self.job.plan, &tallies, [0; 3], [0; 3], false),
+            sensors: tally::sensors(&self.job.plan, &tallies, ByKind::default(), ByKind::default(), false),
             links: self.link_reports(&tallies, &gone, names, &Made::default(), &Left::nothing(gone.len())),
             score: None,
             estimates: Vec::new(),

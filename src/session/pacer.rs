@@ -8,6 +8,7 @@ use super::{Item, Shared};
 use crate::clock::Clock;
 use crate::link::{Sender, Sent};
 use crate::scene::Overload;
+use crate::sensor::ByKind;
 use crate::wire::Packet;
 use rtrb::Consumer;
 use std::sync::atomic::Ordering;
@@ -51,14 +52,14 @@ pub(super) struct Pacer<C> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Left {
     /// Samples, of each kind.
-    pub samples: [u64; 3],
+    pub samples: ByKind<u64>,
     /// Packets, of each output.
     pub packets: Vec<u64>,
 }
 
 impl Left {
     pub(super) fn nothing(outputs: usize) -> Left {
-        Left { samples: [0; 3], packets: vec![0; outputs] }
+        Left { samples: ByKind::default(), packets: vec![0; outputs] }
     }
 
     fn add(&mut self, output: usize, packet: &Packet) {

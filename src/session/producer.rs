@@ -3,8 +3,9 @@
 use super::{Item, Shared};
 use crate::player::{BLOCK, Player};
 use crate::scene::{Output, Plan};
+use crate::sensor::ByKind;
 use crate::time::SimTime;
-use crate::wire::{self, Encoder, Packet, Setup};
+use crate::wire::{self, Encoder, Packet, Setup, dialogue::Peer};
 use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -16,8 +17,8 @@ const FULL: Duration = Duration::from_micros(200);
 /// made of them, of each output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Made {
-    pub samples: Vec<[u64; 3]>,
-    pub waiting: Vec<[u64; 3]>,
+    pub samples: Vec<ByKind<u64>>,
+    pub waiting: Vec<ByKind<u64>>,
     pub packets: Vec<u64>,
 }
 
@@ -37,11 +38,12 @@ pub(super) fn produce(
         axes: plan.axes,
         day: plan.day,
         options: output.wire,
+        peer: Peer::default(),
     };
     let encoders: Vec<_> =
         outputs.iter().map(|output| wire::encoder(output.to.protocol, &setup(output))).collect();
     let mut maker = Maker {
-        samples: vec![[0; 3]; outputs.len()],
+        samples: vec![ByKind::default(); outputs.len()],
         encoders,
         made: vec![0; outputs.len()],
         packets: Vec::new(),
@@ -59,7 +61,7 @@ pub(super) fn produce(
 
 struct Maker<'a> {
     encoders: Vec<Box<dyn Encoder>>,
-    samples: Vec<[u64; 3]>,
+    samples: Vec<ByKind<u64>>,
     made: Vec<u64>,
     packets: Vec<Packet>,
     items: Vec<Item>,

@@ -3,7 +3,7 @@
 use crate::os;
 use crate::report::{SensorReport, Times};
 use crate::scene::Plan;
-use crate::sensor::SensorKind;
+use crate::sensor::{ByKind, SensorKind};
 use crate::wire::Packet;
 use std::time::Duration;
 
@@ -91,7 +91,7 @@ pub(super) struct LinkTally {
     pub packets: u64,
     pub bytes: u64,
     pub dropped: u64,
-    pub sensors: [SensorTally; 3],
+    pub sensors: ByKind<SensorTally>,
     pub gaps: Gaps,
     /// When its first and its last packet were sent, ns, and the bytes of the last.
     first: i64,
@@ -193,8 +193,8 @@ impl Gaps {
 pub(super) fn sensors(
     plan: &Plan,
     tallies: &[LinkTally],
-    made: [u64; 3],
-    queued: [u64; 3],
+    made: ByKind<u64>,
+    queued: ByKind<u64>,
     paced: bool,
 ) -> Vec<SensorReport> {
     plan.sensors
@@ -207,8 +207,8 @@ fn report(
     kind: SensorKind,
     rate_hz: f64,
     tallies: &[LinkTally],
-    made: [u64; 3],
-    queued: [u64; 3],
+    made: ByKind<u64>,
+    queued: ByKind<u64>,
     paced: bool,
 ) -> SensorReport {
     let mut all = SensorTally::default();

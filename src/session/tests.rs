@@ -198,8 +198,13 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
 }
 
 fn encoded(plan: &Plan, protocol: &str, block: usize) -> Vec<u8> {
-    let setup =
-        Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: wire::Options::default() };
+    let setup = Setup {
+        sensors: &plan.sensors,
+        axes: plan.axes,
+        day: plan.day,
+        options: wire::Options::default(),
+        peer: Default::default(),
+    };
     let mut encoder = wire::encoder(Protocol::from_name(protocol).unwrap(), &setup);
     let mut packets = Vec::new();
     let played = Player::new(plan, plan.duration, block).play(|moment| {

@@ -4,7 +4,7 @@
 //! before; the temperature of the first sensor that has one in the scene. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
 
 use super::{Encoder, EverySecond, Newest, Packet, Setup};
-use crate::sensor::{Reading, SensorKind};
+use crate::sensor::{ByKind, Reading, SensorKind};
 use crate::time::SimTime;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
 
@@ -118,7 +118,7 @@ impl Encoder for Mavlink {
         }
     }
 
-    fn waiting(&self) -> [u64; 3] {
+    fn waiting(&self) -> ByKind<u64> {
         self.newest.waiting()
     }
 }

@@ -5,7 +5,7 @@
 
 use super::{Encoder, EverySecond, Layout, Newest, Packet, Setup};
 use crate::earth::STANDARD_GRAVITY;
-use crate::sensor::{Mount, REFERENCE_TEMPERATURE, Reading, SensorKind, SensorPlan, lsb};
+use crate::sensor::{ByKind, Mount, REFERENCE_TEMPERATURE, Reading, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
 use ratetable_protocols::mpu::registers::{self, Chip};
 use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
@@ -141,7 +141,7 @@ impl Encoder for Mpu {
         }
     }
 
-    fn waiting(&self) -> [u64; 3] {
+    fn waiting(&self) -> ByKind<u64> {
         self.newest.waiting()
     }
 }

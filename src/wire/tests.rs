@@ -15,7 +15,13 @@ pub(super) fn plan(text: &str) -> Plan {
 }
 
 pub(super) fn setup(plan: &Plan, layout: Option<Layout>) -> Setup<'_> {
-    Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: Options { layout } }
+    Setup {
+        sensors: &plan.sensors,
+        axes: plan.axes,
+        day: plan.day,
+        options: Options { layout, ..Options::default() },
+        peer: Peer::default(),
+    }
 }
 
 /// Every packet of a plan, and every reading with its time.
@@ -413,7 +419,7 @@ fn protocols_have_names_and_a_burst_needs_both_sensors() {
         assert!(!protocol.about().is_empty());
     }
     let gyro = plan("duration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\n");
-    let burst = Options { layout: Some(Layout::Burst) };
+    let burst = Options { layout: Some(Layout::Burst), ..Options::default() };
     assert!(check(Protocol::Mpu, &burst, &gyro.sensors).unwrap_err().contains("[accel]"));
     assert!(check(Protocol::Mpu, &burst, &plan(NOISY).sensors).is_ok());
     assert!(check(Protocol::Mpu, &Options::default(), &gyro.sensors).is_ok());
@@ -444,9 +450,9 @@ proptest! {
             faults: Vec::new(),
         });
         let sensors: Vec<_> = SensorKind::ALL.into_iter().zip(ticks).filter_map(sensor).collect();
-        let options = Options { layout };
+        let options = Options { layout, ..Options::default() };
         prop_assume!(check(protocol, &options, &sensors).is_ok());
-        let setup = Setup { sensors: &sensors, axes: Axes::NedFrd, day: None, options };
+        let setup = Setup { sensors: &sensors, axes: Axes::NedFrd, day: None, options, peer: Peer::default() };
         let mut encoder = encoder(protocol, &setup);
         let (mut packets, mut made) = (Vec::new(), [0u64; 3]);
         let end = SimTime(3 * NANOS);

@@ -5,7 +5,7 @@ use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
-use crate::wire::answer::unwrapped;
+use crate::wire::dialogue::unwrapped;
 use ratetable_protocols::Losses;
 use ratetable_protocols::mpu::registers::{self, ST1_DATA_READY, ST2_16_BIT, ST2_OVERFLOW};
 use ratetable_protocols::mpu::{Decoder, Packet, Received, config, mag};

@@ -1,0 +1,100 @@
+//! The conversation with whoever is at the other end: what they say, what is answered, when they may be played to.
+//!
+//! A [`Dialogue`] touches no link and reads no clock: bytes and times go in, what they mean comes out, so that a
+//! test holds a whole conversation in memory. The session writes the replies, keeps the estimates for the score and
+//! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
+
+mod mpu;
+
+use super::{Controller, Protocol};
+use crate::geometry::Attitude;
+use crate::time::{Rate, SimTime};
+
+/// What a message from the other side amounts to.
+#[derive(Debug)]
+pub enum Said<'a> {
+    /// Its estimate of the attitude.
+    Estimate(Estimate),
+    /// It is to be sent these bytes as soon as possible, ahead of the stream; at most [`super::MAX_PACKET`].
+    Reply(&'a [u8]),
+    /// It has taken a packet of samples in and waits for the next: lockstep.
+    Took,
+    /// The user should know this; said once.
+    Notice(String),
+    /// A whole message of the other side that a ground station would want to see.
+    Pass(&'a [u8]),
+}
+
+/// An attitude estimate of the other side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// When it held.
+    pub stamp: Stamp,
+    /// Body to nav.
+    pub attitude: Attitude,
+}
+
+/// What is known of the time at which an estimate held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stamp {
+    /// The stream time of the newest sample it rests on, as echoed: exact.
+    Sample(SimTime),
+    /// Time of the other side's own clock, ns since whenever.
+    Own(i64),
+    /// Nothing but its arrival.
+    Arrival,
+}
+
+/// How far a conversation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// It is not to be sent samples yet: a handshake is under way, or it has not been heard.
+    Silent,
+    /// It is fed the vehicle at rest, for its estimator to settle.
+    Still,
+    /// The scene may start.
+    Ready,
+}
+
+/// What the encoder has to know of the other side, once the stage is past [`Stage::Silent`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peer {
+    /// The system id to share (MAVLink).
+    pub system: Option<u8>,
+    /// The rate at which it asked for samples.
+    pub rate: Option<Rate>,
+}
+
+/// One end of a conversation; `now` is in ns on one clock, of which only differences matter.
+pub trait Dialogue {
+    /// Takes in bytes as they arrive, however they are cut.
+    fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>));
+
+    /// Called every ten milliseconds or so, for what is due by itself: a request, a resend, a notice that nobody answers.
+    fn tick(&mut self, _now: i64, _say: &mut dyn FnMut(Said<'_>)) {}
+
+    /// How far it is.
+    fn stage(&self) -> Stage {
+        Stage::Ready
+    }
+
+    /// What is known of the other side.
+    fn peer(&self) -> Peer {
+        Peer::default()
+    }
+
+    /// Packets that came damaged, and runs of bytes that were none.
+    fn damaged(&self) -> u64 {
+        0
+    }
+}
+
+/// The conversation of a protocol, as `controller` wants it led; `None` where the other side says nothing.
+pub fn dialogue(protocol: Protocol, _controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
+    match protocol {
+        Protocol::Mpu => Some(Box::new(mpu::Answers::new())),
+        Protocol::Mavlink | Protocol::Csv | Protocol::Jsonl => None,
+    }
+}
+
+pub(super) use mpu::unwrapped;
