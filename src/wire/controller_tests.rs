@@ -66,10 +66,17 @@ fn inertial(packets: &[Packet]) -> Vec<mip::imu::Repr> {
     all
 }
 
-const LEVEL: &str = "24583c001f203600020f000000000000000000000000000000000000000000000000000000000000\
-                     0000e803000000000000cd8b010000280000b8ba2e";
-const TURNING: &str = "24583c001f203600020f000000000000000000000000000000000000000000000000000000000000\
-                       ae00ec0155031000e0ffd0ffcd8b0100f8f38700e9b071";
+/// A golden message: level, heading north, in a field that dips 60 degrees.
+const LEVEL: &str = "00000000e803000000000000cd8b010000280000b8ba2e";
+/// At roll 30, pitch 10, yaw 90 degrees, turning at 1, 2, 3 deg/s.
+const TURNING: &str = "ae00ec0155031000e0ffd0ffcd8b0100f8f38700e9b071";
+
+/// What follows the header, version, flags and 30 bytes of zeros of a simulator message, which are checked.
+fn readings_of(packet: &Packet) -> String {
+    let hex = hex(packet.bytes());
+    let start = format!("24583c001f203600020f{}", "00".repeat(30));
+    hex.strip_prefix(&start).unwrap_or_else(|| panic!("{hex}")).to_string()
+}
 
 #[test]
 fn msp_sends_the_golden_bytes_of_inav() {
@@ -83,7 +90,7 @@ fn msp_sends_the_golden_bytes_of_inav() {
             let down = strength * 60f64.to_radians().sin();
             let earth = format!("[earth]\nfield = \"[{}, {}, {down}] uT\"\n", field * north, field * east);
             let (packets, _) = play(&plan(&format!("{motion}{earth}{EXACT}")), Protocol::Msp, None);
-            assert_eq!(hex(packets[0].bytes()), golden, "declination {declination}, {strength} uT");
+            assert_eq!(readings_of(&packets[0]), golden, "declination {declination}, {strength} uT");
             assert_eq!(packets.len(), 100);
         }
     }
@@ -106,7 +113,7 @@ fn a_mistake_in_the_readings_is_not_golden() {
             encoder.encode(&Now { t: moment.t, truth: moment.truth, readings: &readings }, &mut packets);
             Err(())
         });
-        hex(packets[0].bytes())
+        readings_of(&packets[0])
     };
     assert_eq!(first(&|_| {}), TURNING);
     let changes: [fn([f64; 3]) -> [f64; 3]; 4] =

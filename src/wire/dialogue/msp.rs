@@ -120,7 +120,7 @@ fn judge(received: &Received, told: &mut Told, say: &mut dyn FnMut(Said<'_>)) {
             && !std::mem::replace(&mut told.refusal, true) =>
         {
             say(Said::Notice(
-                "the flight controller refuses the simulator message (0x201F): its firmware must be INAV with USE_SIMULATOR, version 5 or newer".into(),
+                "the flight controller refuses the simulator message (0x201F): its firmware must be INAV built with USE_SIMULATOR, whose message has version 2".into(),
             ));
         }
         _ => {}

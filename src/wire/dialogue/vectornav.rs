@@ -259,7 +259,8 @@ mod tests {
                 hurt[bit / 8] ^= 1 << (bit % 8);
                 let mut unit = new();
                 let heard = hear(&mut unit, &hurt);
-                let small = hurt[bit / 8].is_ascii_lowercase();
+                // A digit of the checksum in its small letter says the same.
+                let small = bit / 8 >= bytes.len() - 4 && hurt[bit / 8].is_ascii_lowercase();
                 assert!(!heard.contains(command) || small, "{heard}");
                 assert_eq!(unit.stage() == Stage::Ready, small && command == HANDSHAKE[6]);
                 shake_hands(&mut unit);
