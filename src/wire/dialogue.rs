@@ -5,6 +5,8 @@
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
 mod mpu;
+mod msp;
+mod vectornav;
 
 use super::{Controller, Protocol};
 use crate::geometry::Attitude;
@@ -90,10 +92,12 @@ pub trait Dialogue {
 }
 
 /// The conversation of a protocol, as `controller` wants it led; `None` where the other side says nothing.
-pub fn dialogue(protocol: Protocol, _controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
+pub fn dialogue(protocol: Protocol, controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
     match protocol {
         Protocol::Mpu => Some(Box::new(mpu::Answers::new())),
-        Protocol::Mavlink | Protocol::Csv | Protocol::Jsonl => None,
+        Protocol::Msp => Some(Box::new(msp::Inav::new(controller))),
+        Protocol::Vectornav => Some(Box::new(vectornav::Unit::new(controller))),
+        Protocol::Mavlink | Protocol::Mip | Protocol::Csv | Protocol::Jsonl => None,
     }
 }
 

@@ -3,6 +3,7 @@
 
 use ratetable_protocols::mavlink::{self, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
+use ratetable_protocols::{mip, msp, vectornav};
 use serde_json::Value;
 
 /// One golden packet: its JSON and its bytes.
@@ -21,7 +22,7 @@ impl Vector {
     }
 }
 
-/// The vectors of `mpu` or `mavlink`.
+/// The vectors of a format.
 pub fn vectors(format: &str) -> Vec<Vector> {
     let path = format!("{}/vectors/{format}.json", env!("CARGO_MANIFEST_DIR"));
     let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
@@ -165,5 +166,98 @@ pub fn mavlink_message(json: &Value) -> Message {
             temperature: int(&f["temperature"]),
         }),
         other => panic!("no message {other}"),
+    }
+}
+
+/// The `msp` message that a vector describes.
+pub fn msp_message(json: &Value) -> msp::Message {
+    let f = &json["fields"];
+    match json["message"].as_str().unwrap() {
+        "empty" => msp::Message::Empty { direction: msp_direction(json), command: int(&json["command"]) },
+        "simulator" => msp::Message::Simulator(msp::simulator::Repr {
+            version: int(&f["version"]),
+            flags: int(&f["flags"]),
+            fix: int(&f["fix"]),
+            satellites: int(&f["satellites"]),
+            latitude: int(&f["latitude"]),
+            longitude: int(&f["longitude"]),
+            altitude: int(&f["altitude"]),
+            ground_speed: int(&f["ground_speed"]),
+            course: int(&f["course"]),
+            velocity: ints(&f["velocity"]),
+            attitude: ints(&f["attitude"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            pressure: int(&f["pressure"]),
+            mag: ints(&f["mag"]),
+        }),
+        "simulator_reply" => msp::Message::SimulatorReply(msp::simulator_reply::Repr {
+            outputs: ints(&f["outputs"]),
+            state: int(&f["state"]),
+            debug: int(&f["debug"]),
+            attitude: ints(&f["attitude"]),
+            display: ints(&f["display"]),
+        }),
+        "attitude" => msp::Message::Attitude(msp::attitude::Repr {
+            roll: int(&f["roll"]),
+            pitch: int(&f["pitch"]),
+            yaw: int(&f["yaw"]),
+        }),
+        "api_version" => msp::Message::ApiVersion(msp::api_version::Repr {
+            protocol: int(&f["protocol"]),
+            major: int(&f["major"]),
+            minor: int(&f["minor"]),
+        }),
+        "fc_variant" => msp::Message::FcVariant(msp::fc_variant::Repr { name: ints(&f["name"]) }),
+        other => panic!("no message {other}"),
+    }
+}
+
+/// Which way the frame of a vector goes.
+pub fn msp_direction(json: &Value) -> msp::Direction {
+    match json["direction"].as_str().unwrap() {
+        "request" => msp::Direction::Request,
+        "reply" => msp::Direction::Reply,
+        "refusal" => msp::Direction::Refusal,
+        other => panic!("no direction {other}"),
+    }
+}
+
+/// The `vectornav` packet that a vector describes.
+pub fn vectornav_packet(json: &Value) -> vectornav::Packet {
+    let f = &json["fields"];
+    match json["type"].as_str().unwrap() {
+        "imu" => vectornav::Packet::Imu(vectornav::imu::Repr {
+            time_ns: f["time_ns"].as_u64().unwrap(),
+            gyro: floats(&f["gyro"]),
+            accel: floats(&f["accel"]),
+            raw_accel: floats(&f["raw_accel"]),
+            raw_gyro: floats(&f["raw_gyro"]),
+            mag: floats(&f["mag"]),
+            temperature: float(&f["temperature"]),
+            pressure: float(&f["pressure"]),
+        }),
+        "ahrs" => vectornav::Packet::Ahrs(vectornav::ahrs::Repr {
+            time_ns: f["time_ns"].as_u64().unwrap(),
+            yaw_pitch_roll: floats(&f["yaw_pitch_roll"]),
+            xyzw: floats(&f["xyzw"]),
+            uncertainty: floats(&f["uncertainty"]),
+        }),
+        "line" => {
+            let text = f["text"].as_str().unwrap();
+            vectornav::Packet::Line(vectornav::line::Line::new(text).unwrap())
+        }
+        other => panic!("no packet type {other}"),
+    }
+}
+
+/// The `mip` packet that a vector describes: fields that it lacks are not sent.
+pub fn mip_packet(json: &Value) -> mip::imu::Repr {
+    let vector = |name: &str| json["fields"].get(name).map(floats);
+    mip::imu::Repr {
+        pressure: json["fields"].get("pressure").map(float),
+        mag: vector("mag"),
+        accel: vector("accel"),
+        gyro: vector("gyro"),
     }
 }
