@@ -4,6 +4,7 @@
 //! test holds a whole conversation in memory. The session writes the replies, keeps the estimates for the score and
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
+mod mavlink;
 mod mpu;
 
 use super::{Controller, Protocol};
@@ -90,10 +91,11 @@ pub trait Dialogue {
 }
 
 /// The conversation of a protocol, as `controller` wants it led; `None` where the other side says nothing.
-pub fn dialogue(protocol: Protocol, _controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
+pub fn dialogue(protocol: Protocol, controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
     match protocol {
         Protocol::Mpu => Some(Box::new(mpu::Answers::new())),
-        Protocol::Mavlink | Protocol::Csv | Protocol::Jsonl => None,
+        Protocol::Mavlink => Some(Box::new(mavlink::Mavlink::new(controller))),
+        Protocol::Csv | Protocol::Jsonl => None,
     }
 }
 
