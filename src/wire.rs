@@ -18,7 +18,7 @@ use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
 
-pub use mavlink::{EXTRA_RATE_HZ, Extra, Extras};
+pub use mavlink::{Extra, Extras};
 pub use ratetable_protocols::mavlink::Version;
 
 /// The longest packet of any protocol, bytes.

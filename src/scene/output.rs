@@ -116,13 +116,18 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let overload = Overload::from_name(section.word("overload", &Overload::NAMES, Overload::NAMES[0]));
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
+    let (version, extras) = mavlink(section);
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
     let to = section.text("to", None)?;
     let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
-    let (version, extras) = mavlink(section, to.protocol);
     let wire = wire::Options { layout, version, extras, ..wire::Options::default() };
+    for key in ["version", "messages"] {
+        if section.has(key) && to.protocol != Protocol::Mavlink {
+            section.mistake(key, format!("is for `mavlink`, not for `{}`", to.protocol.name()));
+        }
+    }
     if layout.is_some() && to.protocol != Protocol::Mpu {
         section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
     }
@@ -138,12 +143,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
 }
 
 /// `version` and `messages`, which only `mavlink` has.
-fn mavlink(section: &Section<'_>, protocol: Protocol) -> (Version, Extras) {
-    for key in ["version", "messages"] {
-        if section.has(key) && protocol != Protocol::Mavlink {
-            section.mistake(key, format!("is for `mavlink`, not for `{}`", protocol.name()));
-        }
-    }
+fn mavlink(section: &Section<'_>) -> (Version, Extras) {
     let version = match section.has("version").then(|| section.whole("version", 2)) {
         Some(1) => Version::V1,
         Some(2) | None => Version::V2,

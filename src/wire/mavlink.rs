@@ -6,7 +6,7 @@
 
 mod extra;
 
-pub use extra::{Extra, Extras, RATE_HZ as EXTRA_RATE_HZ};
+pub use extra::{Extra, Extras};
 
 use super::{Encoder, EverySecond, Newest, Now, Packet, Setup};
 use crate::sensor::{ByKind, SensorKind};

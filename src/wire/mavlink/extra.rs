@@ -1,8 +1,8 @@
 //! Messages beside HIL_SENSOR, each on request.
 //!
-//! They repeat the newest readings or tell the truth, [`RATE_HZ`] times a second of scene time: each goes out at the
+//! They repeat the newest readings or tell the truth, 50 times a second of scene time: each goes out at the
 //! first tick of any sensor at or after its turn. To add one: its variant, name and line of help, and its arm in
-//! [`Sender::message`].
+//! `Sender::message`.
 
 use super::{MICROTESLA_A_GAUSS, Readings};
 use crate::earth::STANDARD_GRAVITY;
@@ -14,7 +14,7 @@ use ratetable_protocols::mavlink::{
 };
 
 /// How often each is sent.
-pub const RATE_HZ: i64 = 50;
+const RATE_HZ: i64 = 50;
 
 /// A message that `mavlink` sends if it is asked to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

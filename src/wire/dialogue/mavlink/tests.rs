@@ -74,7 +74,7 @@ fn said(words: Vec<Word>) -> Vec<Word> {
 
 fn message(bytes: &[u8]) -> (Header, Message) {
     let mut all = Vec::new();
-    mavlink::Decoder::new().feed(bytes, |received| all.push(received.unwrap()));
+    Decoder::new().feed(bytes, |received| all.push(received.unwrap()));
     let [received] = all[..] else { panic!("one message a packet: {all:?}") };
     (received.header, received.message.unwrap())
 }
