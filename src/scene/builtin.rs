@@ -1,13 +1,20 @@
 //! The scenes that come with the program.
 
 /// Name and text of each.
-pub const SCENES: [(&str, &str); 6] = [
+pub const SCENES: [(&str, &str); 13] = [
     ("table-1", include_str!("builtin/table-1.toml")),
     ("still", include_str!("builtin/still.toml")),
     ("coning", include_str!("builtin/coning.toml")),
     ("manoeuvre", include_str!("builtin/manoeuvre.toml")),
     ("mpu-9250", include_str!("builtin/mpu-9250.toml")),
     ("full-mpu9250", include_str!("builtin/full-mpu9250.toml")),
+    ("level-then-turn", include_str!("builtin/level-then-turn.toml")),
+    ("coning-mems", include_str!("builtin/coning-mems.toml")),
+    ("pirouette", include_str!("builtin/pirouette.toml")),
+    ("pitch-through-90", include_str!("builtin/pitch-through-90.toml")),
+    ("vibration", include_str!("builtin/vibration.toml")),
+    ("magnetic-disturbance", include_str!("builtin/magnetic-disturbance.toml")),
+    ("long-still", include_str!("builtin/long-still.toml")),
 ];
 
 /// The text of the built-in scene of that name.

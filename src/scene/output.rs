@@ -83,12 +83,20 @@ pub struct Output {
     pub overload: Overload,
     /// Whether to start although the baud rate does not carry the packets.
     pub force: bool,
+    /// What becomes of its packets on their way.
+    pub faults: Vec<wire::Fault>,
 }
 
 impl Output {
     /// An output of the command line: nothing but its destination.
     pub fn to(to: Destination) -> Output {
-        Output { to, wire: wire::Options::default(), overload: Overload::default(), force: false }
+        Output {
+            to,
+            wire: wire::Options::default(),
+            overload: Overload::default(),
+            force: false,
+            faults: Vec::new(),
+        }
     }
 }
 
@@ -139,7 +147,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
         Some(false) => to.address = to.address.unpaced(),
         None => {}
     }
-    Some(Output { to, wire, overload, force })
+    Some(Output { to, wire, overload, force, faults: Vec::new() })
 }
 
 /// `version` and `messages`, which only `mavlink` has.

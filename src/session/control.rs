@@ -2,7 +2,7 @@
 
 use super::answers::{self, Ear, Heard};
 use super::granted::Granted;
-use super::links::{Account, LOOK, Lookout};
+use super::links::{self, Account, LOOK, Lookout};
 use super::pacer::{Left, Pacer};
 use super::producer::{self, Made};
 use super::tally::{self, LinkTally};
@@ -335,7 +335,7 @@ impl Run {
 
     /// Lets the other side take what was sent, closes everything, and adds up.
     async fn finish(mut self, ended: Ended) -> Result<Outcome, SessionError> {
-        let Ended { mut pacer, links, program, names, granted, made: (made, left) } = ended;
+        let Ended { mut pacer, links, program, names, granted, made: (mut made, left) } = ended;
         for (sender, gone) in pacer.senders.iter_mut().zip(&mut pacer.gone) {
             if let Err(error) = sender.finish() {
                 gone.get_or_insert(error.kind());
@@ -375,9 +375,11 @@ impl Run {
         let (total, waiting) = (sum(&made.samples), sum(&made.waiting));
         let queued = std::array::from_fn(|i| left.samples[i] + waiting[i]);
         let paced = self.job.speed != Speed::Max;
+        let played = self.played(&gone);
+        made.faults.iter_mut().flatten().for_each(|acts| acts.settle(played));
         let heard = self.heard.borrow();
         Ok(Outcome {
-            played: self.played(&gone),
+            played,
             interrupted: self.interrupted,
             stretched_s: stretched as f64 * 1e-9,
             realtime: granted.priority,
@@ -386,6 +388,7 @@ impl Run {
             watched: pacer.watching.map(|watching| watching.seen),
             sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
             links: self.link_reports(&tallies, &gone, names, &made, &left),
+            faults: links::fired(&self.job.outputs, &made),
             score: heard.scorer.score(&self.job.estimator),
             estimates: heard.estimates.clone(),
             command,
@@ -427,6 +430,7 @@ impl Run {
             watched: None,
             sensors: tally::sensors(&self.job.plan, &tallies, ByKind::default(), ByKind::default(), false),
             links: self.link_reports(&tallies, &gone, names, &Made::default(), &Left::nothing(gone.len())),
+            faults: Vec::new(),
             score: None,
             estimates: Vec::new(),
             command: self.ended,

@@ -5,7 +5,7 @@ use crate::player::{BLOCK, Moment, Player};
 use crate::scene::{Output, Plan};
 use crate::sensor::ByKind;
 use crate::time::SimTime;
-use crate::wire::{self, Encoder, Now, Packet, Setup, dialogue::Peer};
+use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Setup, dialogue::Peer};
 use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -20,6 +20,8 @@ pub(super) struct Made {
     pub samples: Vec<ByKind<u64>>,
     pub waiting: Vec<ByKind<u64>>,
     pub packets: Vec<u64>,
+    /// What faults have done, of each output.
+    pub faults: Vec<Vec<Acts>>,
 }
 
 /// Everything stopped before the end.
@@ -42,9 +44,14 @@ pub(super) fn produce(
     };
     let encoders: Vec<_> =
         outputs.iter().map(|output| wire::encoder(output.to.protocol, &setup(output))).collect();
+    let faults = outputs
+        .iter()
+        .enumerate()
+        .map(|(i, output)| Faults::new(&output.faults, output.to.protocol, plan.seed, i));
     let mut maker = Maker {
         samples: vec![ByKind::default(); outputs.len()],
         encoders,
+        faults: faults.collect(),
         made: vec![0; outputs.len()],
         packets: Vec::new(),
         items: Vec::new(),
@@ -54,13 +61,22 @@ pub(super) fn produce(
     let mut player = Player::new(plan, end, BLOCK);
     // Stopping early is no failure: what was made is counted either way.
     let _ = player.play(|moment| maker.make(moment));
+    maker.end();
     shared.all_made.store(true, Ordering::Release);
     let waiting = maker.encoders.iter().map(|encoder| encoder.waiting()).collect();
-    Made { samples: maker.samples, waiting, packets: maker.made }
+    let samples = maker.samples.iter().zip(&maker.faults);
+    let samples = samples.map(|(made, faults)| faults.as_ref().map_or(*made, |faults| faults.account(*made)));
+    Made {
+        samples: samples.collect(),
+        waiting,
+        packets: maker.made,
+        faults: maker.faults.into_iter().map(|faults| faults.map_or(Vec::new(), Faults::into_acts)).collect(),
+    }
 }
 
 struct Maker<'a> {
     encoders: Vec<Box<dyn Encoder>>,
+    faults: Vec<Option<Faults>>,
     samples: Vec<ByKind<u64>>,
     made: Vec<u64>,
     packets: Vec<Packet>,
@@ -75,21 +91,46 @@ impl Maker<'_> {
             return Err(Stopped);
         }
         self.items.clear();
-        for (output, encoder) in self.encoders.iter_mut().enumerate() {
+        for output in 0..self.encoders.len() {
             for reading in readings {
                 self.samples[output][reading.kind as usize] += 1;
             }
             self.packets.clear();
-            encoder.encode(&Now { t, truth, readings }, &mut self.packets);
-            self.made[output] += self.packets.len() as u64;
-            self.items.extend(self.packets.iter().map(|&packet| Item { output, packet }));
+            self.encoders[output].encode(&Now { t, truth, readings }, &mut self.packets);
+            if let Some(faults) = &mut self.faults[output] {
+                faults.pass(t, &mut self.packets);
+                faults.settle(SimTime(self.shared.scene_ns.load(Ordering::Relaxed)));
+            }
+            self.count(output);
         }
-        if self.encoders.len() > 1 {
+        self.hand_over();
+        Ok(())
+    }
+
+    /// What faults still hold goes out.
+    fn end(&mut self) {
+        self.items.clear();
+        for output in 0..self.faults.len() {
+            self.packets.clear();
+            if let Some(faults) = &mut self.faults[output] {
+                faults.end(&mut self.packets);
+            }
+            self.count(output);
+        }
+        self.hand_over();
+    }
+
+    fn count(&mut self, output: usize) {
+        self.made[output] += self.packets.iter().filter(|packet| !packet.is_nothing()).count() as u64;
+        self.items.extend(self.packets.iter().map(|&packet| Item { output, packet }));
+    }
+
+    fn hand_over(&mut self) {
+        if self.encoders.len() > 1 || self.faults.iter().any(Option::is_some) {
             // A packet due between two ticks of one output must not wait behind a later one of another.
             self.items.sort_by_key(|item| item.packet.due);
         }
         self.items.iter().for_each(|item| push(&mut self.ring, *item, self.shared));
-        Ok(())
     }
 }
 
