@@ -27,6 +27,9 @@ use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
 
+pub use mavlink::{Extra, Extras};
+pub use ratetable_protocols::mavlink::Version;
+
 /// The longest packet of any protocol, bytes.
 pub const MAX_PACKET: usize = 232;
 
@@ -164,6 +167,10 @@ pub struct Options {
     pub layout: Option<Layout>,
     /// Whose ways the protocol keeps to.
     pub controller: Option<Controller>,
+    /// For `mavlink`: the version of its framing.
+    pub version: Version,
+    /// For `mavlink`: what is sent beside HIL_SENSOR.
+    pub extras: Extras,
 }
 
 /// What an encoder needs to know of the scene.
@@ -231,7 +238,14 @@ pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> R
     {
         return Err("`layout = \"burst\"` needs both [gyro] and [accel]".into());
     }
-    Ok(())
+    let px4 = matches!(options.controller, Some(Controller::Px4 | Controller::Px4Sitl));
+    let truth = options.extras.iter().find(|extra| px4 && extra.is_truth());
+    truth.map_or(Ok(()), |truth| {
+        Err(format!(
+            "{} tells the truth, and PX4 is to find it out itself: in HITL it fights the estimator; leave it out, the score needs it not",
+            truth.name()
+        ))
+    })
 }
 
 /// What a protocol cannot carry of these sensors, for `check` and the report: a sensor faster than the packets

@@ -2,6 +2,7 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::sample::select;
 use ratetable_protocols::mavlink::{self, Header, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
 use ratetable_protocols::{Error, cobs, mip, msp, vectornav};
@@ -26,8 +27,8 @@ fn any_packet() -> impl Strategy<Value = Packet> {
 /// Any message, made from any payload without not-a-number.
 #[allow(clippy::eq_op, reason = "not-a-number is what is not equal to itself")]
 fn any_message() -> impl Strategy<Value = Message> {
-    let ids = prop_oneof![Just(0), Just(2), Just(26), Just(27), Just(30), Just(31), Just(105), Just(107)];
-    (ids, vec(any::<u8>(), 65))
+    let known: Vec<u32> = (0..300).filter(|&id| mavlink::crc_extra(id).is_some()).collect();
+    (select(known), vec(any::<u8>(), mavlink::MAX_PAYLOAD_LEN))
         .prop_map(|(id, bytes)| Message::parse(id, &bytes).unwrap())
         .prop_filter("not-a-number is not equal to itself", |message| message == message)
 }
@@ -107,6 +108,18 @@ fn as_said_in(version: Version, message: Message) -> Message {
         }
         (Version::V1, Message::ScaledImu(repr)) => {
             Message::ScaledImu(mavlink::scaled_imu::Repr { temperature: 0, ..repr })
+        }
+        (Version::V1, Message::ScaledImu2(repr)) => {
+            Message::ScaledImu2(mavlink::scaled_imu2::Repr { temperature: 0, ..repr })
+        }
+        (Version::V1, Message::ScaledImu3(repr)) => {
+            Message::ScaledImu3(mavlink::scaled_imu3::Repr { temperature: 0, ..repr })
+        }
+        (Version::V1, Message::CommandAck(mavlink::command_ack::Repr { command, result, .. })) => {
+            Message::CommandAck(mavlink::command_ack::Repr { command, result, ..Default::default() })
+        }
+        (Version::V1, Message::HilGps(repr)) => {
+            Message::HilGps(mavlink::hil_gps::Repr { id: 0, yaw: 0, ..repr })
         }
         (Version::V1, Message::AttitudeQuaternion(repr)) => {
             Message::AttitudeQuaternion(mavlink::attitude_quaternion::Repr {

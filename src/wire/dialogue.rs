@@ -4,6 +4,7 @@
 //! test holds a whole conversation in memory. The session writes the replies, keeps the estimates for the score and
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
+mod mavlink;
 mod mpu;
 mod msp;
 mod vectornav;
@@ -97,7 +98,8 @@ pub fn dialogue(protocol: Protocol, controller: Option<Controller>) -> Option<Bo
         Protocol::Mpu => Some(Box::new(mpu::Answers::new())),
         Protocol::Msp => Some(Box::new(msp::Inav::new(controller))),
         Protocol::Vectornav => Some(Box::new(vectornav::Unit::new(controller))),
-        Protocol::Mavlink | Protocol::Mip | Protocol::Csv | Protocol::Jsonl => None,
+        Protocol::Mip | Protocol::Csv | Protocol::Jsonl => None,
+        Protocol::Mavlink => Some(Box::new(mavlink::Mavlink::new(controller))),
     }
 }
 

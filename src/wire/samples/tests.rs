@@ -8,7 +8,9 @@ use crate::wire::controller_tests::TOGETHER;
 use crate::wire::tests::{NOISY, plan, play};
 use crate::wire::{Layout, Now, Packet, at_rest};
 use proptest::prelude::*;
-use ratetable_protocols::mavlink::{self, Header, Message, Version, highres_imu, raw_imu, scaled_imu};
+use ratetable_protocols::mavlink::{
+    self, Header, Message, Version, highres_imu, raw_imu, scaled_imu, scaled_imu2, scaled_imu3,
+};
 use std::sync::OnceLock;
 
 /// Sensors at rates that have nothing to do with one another, each axis and sensor with values of its own.
@@ -219,7 +221,12 @@ fn what_autopilots_send_of_their_own_sensors_is_read_in_our_units() {
     let (gyro, mag) = (Vector::new(0.25, 0.0, -0.125), Vector::new(25.0, 0.0, 50.0));
     let half_g = Vector::new(0.0, 0.5, -1.0) * crate::earth::STANDARD_GRAVITY;
     let all = highres_imu::GYRO | highres_imu::ACCEL | highres_imu::MAG;
+    let scaled_imu::Repr { time_boot_ms, accel, gyro: mrad, .. } = scaled([0; 3]);
+    let second = scaled_imu2::Repr { time_boot_ms, accel, gyro: mrad, mag: [0; 3], temperature: 0 };
+    let third = scaled_imu3::Repr { time_boot_ms, accel, gyro: mrad, mag: [250, 0, 500], temperature: 0 };
     for (sent, values) in [
+        (Message::ScaledImu2(second), [Some(gyro), Some(half_g)].to_vec()),
+        (Message::ScaledImu3(third), [Some(gyro), Some(half_g), Some(mag)].to_vec()),
         (Message::ScaledImu(scaled([250, 0, 500])), [Some(gyro), Some(half_g), Some(mag)].to_vec()),
         (Message::ScaledImu(scaled([0; 3])), [Some(gyro), Some(half_g)].to_vec()),
         (
