@@ -154,8 +154,7 @@ fn the_registers_of_an_mpu_say_the_rate_and_the_filter_of_the_scene() {
         ("MPU-6050", "4 Hz", "DLPF 0", (1, 249)),
     ] {
         let filter = if filter.is_empty() { String::new() } else { format!("filter = \"{filter}\"\n") };
-        let scene =
-            format!("duration = \"0.5 s\"\n[gyro]\npart = \"{part}\"\nrate = \"{rate}\"\n{filter}");
+        let scene = format!("duration = \"0.5 s\"\n[gyro]\npart = \"{part}\"\nrate = \"{rate}\"\n{filter}");
         let (low_pass, divider, who) = config(&scene);
         assert_eq!((low_pass, divider), expected, "{part} {rate} {filter}");
         let chip = registers::Chip::from_who_am_i(who).unwrap();

@@ -4,7 +4,6 @@ use crate::sheet::{Axes, G};
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::Plan;
 use ratetable::sensor::{SensorKind, TERMS};
-use ratetable::time::SimTime;
 use std::f64::consts::TAU;
 
 /// Specimens of each part.
@@ -14,7 +13,7 @@ pub const NOISE_SAMPLES: u64 = 40_000;
 /// By how much the chamber warms a part.
 const WARMER: f64 = 40.0;
 
-/// Readings less truth, and whether the reading clipped.
+/// Reading, error-free reading, and whether it clipped.
 type Samples = Vec<(Axes, Axes, bool)>;
 
 /// Plays a scene of one sensor with only these of its error terms; readings and error-free readings.
@@ -25,7 +24,8 @@ fn play(plan: &Plan, terms: &[&str]) -> Samples {
     while let Some(columns) = player.play_columns() {
         let block = columns.sensor(0);
         let of = |column: &[Vec<f64>; 3], i: usize| [0, 1, 2].map(|axis: usize| column[axis][i]);
-        samples.extend((0..block.len()).map(|i| (of(&block.reading, i), of(&block.truth, i), block.clipped[i])));
+        samples
+            .extend((0..block.len()).map(|i| (of(&block.reading, i), of(&block.truth, i), block.clipped[i])));
     }
     samples
 }
@@ -87,7 +87,8 @@ impl Specimen {
         let samples = play(&self.plan, terms);
         let rest = samples[0].0;
         assert_eq!(samples[0].1.map(|x| x.abs() < 1e-12), [true; 3], "nothing is felt at rest in free fall");
-        [1, 2, 3].map(|i: usize| [0, 1, 2].map(|axis: usize| (samples[i].0[axis] - rest[axis]) / self.half_scale))
+        [1, 2, 3]
+            .map(|i: usize| [0, 1, 2].map(|axis: usize| (samples[i].0[axis] - rest[axis]) / self.half_scale))
     }
 
     /// What it reads of nothing.
@@ -137,7 +138,7 @@ impl Specimen {
     }
 }
 
-/// The standard deviation of a second's thousand samples on each axis, and how long a second that is.
+/// The standard deviation of the white noise on each axis, at rest and at 1 kHz.
 pub fn noise(part: &str, kind: SensorKind, more: &str) -> Axes {
     let text = format!(
         "seed = 11\nduration = \"{} s\"\n[{kind}]\npart = \"{part}\"\nrate = \"1 kHz\"\n{more}\n",
@@ -145,7 +146,8 @@ pub fn noise(part: &str, kind: SensorKind, more: &str) -> Axes {
     );
     let samples = play(&parse(&text), &["white_noise"]);
     [0, 1, 2].map(|axis| {
-        let squares: f64 = samples.iter().map(|(reading, truth, _)| (reading[axis] - truth[axis]).powi(2)).sum();
+        let squares: f64 =
+            samples.iter().map(|(reading, truth, _)| (reading[axis] - truth[axis]).powi(2)).sum();
         (squares / samples.len() as f64).sqrt()
     })
 }
@@ -161,7 +163,8 @@ pub fn stability(part: &str, kind: SensorKind, more: &str) -> (f64, u64) {
         let samples = play(&parse(&text), &["flicker", "bias_instability"]);
         for axis in 0..3 {
             let mean = |second: &[(Axes, Axes, bool)]| {
-                second.iter().map(|(reading, truth, _)| reading[axis] - truth[axis]).sum::<f64>() / RATE as f64
+                second.iter().map(|(reading, truth, _)| reading[axis] - truth[axis]).sum::<f64>()
+                    / RATE as f64
             };
             let means: Vec<f64> = samples.chunks_exact(RATE).map(mean).collect();
             squares += means.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>();
@@ -187,9 +190,9 @@ pub fn ends(part: &str, kind: SensorKind, range: f64, more: &str) -> Ends {
         SensorKind::Gyro => format!(
             "[[motion]]\nkind = \"rotate\"\nangular_rate = \"[{beyond}, {beyond}, 0] rad/s\"\nduration = \"1 s\"\n"
         ),
-        SensorKind::Accel => format!(
-            "[[force]]\nacceleration = \"[{beyond}, {beyond}, {G}] m/s^2\"\nduration = \"1 s\"\n"
-        ),
+        SensorKind::Accel => {
+            format!("[[force]]\nacceleration = \"[{beyond}, {beyond}, {G}] m/s^2\"\nduration = \"1 s\"\n")
+        }
         SensorKind::Mag => format!("[earth]\nfield = \"[{beyond}, {beyond}, 0] uT\"\n"),
     };
     let unit = ["rad/s", "m/s^2", "uT"][kind as usize];
@@ -228,6 +231,5 @@ pub fn gain(part: &str, kind: SensorKind, filter: &str, rate: &str, hz: f64) -> 
     }
     let determinant = cc * ss - cs * cs;
     let [a, b] = [(xc * ss - xs * cs) / determinant, (xs * cc - xc * cs) / determinant];
-    debug_assert!(plan.duration > SimTime::ZERO);
     a.hypot(b)
 }
