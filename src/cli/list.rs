@@ -4,6 +4,7 @@ use super::{Refusal, Verdict, say};
 use crate::keys::{Key, Takes};
 use crate::motion::method::{METHODS, MethodKind};
 use crate::report::table;
+use crate::scene::parts::{Filter, OutputRate, Scale, Settings};
 use crate::scene::{self, builtin};
 use crate::sensor::{self, SensorKind, parts};
 use crate::wire::Protocol;
@@ -80,8 +81,27 @@ fn parts() -> Result<String, Refusal> {
         for value in scene::parts::sources(part).map_err(|mistake| Refusal(mistake.to_string()))? {
             text += &format!("  {} {} = {}\n      {}\n", value.sensor, value.key, value.value, value.source);
         }
+        for kind in SensorKind::ALL {
+            let settings =
+                scene::parts::settings(part, kind).map_err(|mistake| Refusal(mistake.to_string()))?;
+            text += &choices(kind, &settings);
+        }
     }
     Ok(text)
+}
+
+/// What a sensor of a part can be set to.
+fn choices(kind: SensorKind, settings: &Settings) -> String {
+    let mut text = String::new();
+    for (name, source) in &settings.sources {
+        let choices = match *name {
+            "scales" => settings.scales.iter().map(Scale::to_string).collect(),
+            "rates" => settings.rates.iter().map(OutputRate::to_string).collect(),
+            _ => settings.filters.iter().map(Filter::to_string).collect::<Vec<_>>(),
+        };
+        text += &format!("  {kind} {name}: {}\n      {source}\n", choices.join("; "));
+    }
+    text
 }
 
 /// Every table and key of a scene.

@@ -38,16 +38,15 @@ impl Mpu {
         let (accel_config, accel_count) = accel_scale(accel);
         let mount =
             |sensor: Option<&SensorPlan>| sensor.and_then(|sensor| sensor.mount).unwrap_or_else(Mount::flu);
-        let fastest =
-            [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+        let (config, smplrt_div) = sampling(chip, gyro, accel);
         Mpu {
             seq: 0,
             seconds: EverySecond::default(),
             newest: Newest::default(),
             config: config::Repr {
                 who_am_i: chip.who_am_i(),
-                smplrt_div: divider(fastest),
-                config: u8::from(fastest <= 1000.0),
+                smplrt_div,
+                config,
                 gyro_config,
                 accel_config,
                 mag_who: if mag.is_some() { registers::WHO_AK8963 } else { 0 },
@@ -184,7 +183,21 @@ fn burst(setup: &Setup<'_>, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan
     together.then_some(faster)
 }
 
-/// SMPLRT_DIV of the rate: 1 kHz / (1 + divider); the 8 kHz of the unfiltered gyro has none.
-fn divider(hz: f64) -> u8 {
-    if hz <= 0.0 || hz > 1000.0 { 0 } else { (libm::round(1000.0 / hz) - 1.0).clamp(0.0, 255.0) as u8 }
+/// CONFIG and SMPLRT_DIV of the rate of the faster sensor and of the gyro's low-pass filter, or without a gyro the
+/// accelerometer's: the nearest bandwidth that goes with the rate. Without a filter DLPF_CFG is 1 up to 1 kHz, 0 above.
+fn sampling(chip: Chip, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -> (u8, u8) {
+    let hz = [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+    let divider = |undivided: f64| (libm::round(undivided / hz) - 1.0).clamp(0.0, 255.0) as u8;
+    // Half a per cent, as the clocks of these parts do not keep.
+    if hz > 1005.0 {
+        return (0, if chip == Chip::Mpu60x0 { divider(8000.0) } else { 0 });
+    }
+    let filter = gyro.or(accel).and_then(|sensor| sensor.values.table("filter")?.scalar("low_pass"));
+    let Some(cut_off) = filter else { return (1, divider(1000.0)) };
+    let bandwidths = chip.gyro_bandwidths_hz();
+    // 8 kHz are divided by an MPU-6050 alone, and by 256 at most.
+    let widest = if chip == Chip::Mpu60x0 && hz >= 8000.0 / 256.0 { 0 } else { 1 };
+    let off = |config: &u8| libm::log(bandwidths[usize::from(*config)] / cut_off).abs();
+    let config = (widest..=6).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(1);
+    (config, divider(if config == 0 { 8000.0 } else { 1000.0 }))
 }

@@ -139,6 +139,38 @@ fn mpu_packs_gyro_and_accel_together_when_they_tick_alike() {
 }
 
 #[test]
+fn the_registers_of_an_mpu_say_the_rate_and_the_filter_of_the_scene() {
+    let config = |scene: &str| {
+        let (packets, _) = play(&plan(scene), Protocol::Mpu, None);
+        match driven(&packets)[0].1 {
+            mpu::Packet::Config(config) => (config.config, config.smplrt_div, config.who_am_i),
+            other => panic!("{other:?} comes first"),
+        }
+    };
+    for (part, rate, filter, expected) in [
+        ("MPU-9250", "1 kHz", "", (1, 0)),
+        ("MPU-9250", "1 kHz", "DLPF 2", (2, 0)),
+        ("MPU-9250", "200 Hz", "DLPF 6", (6, 4)),
+        ("MPU-9250", "8 kHz", "DLPF 0", (0, 0)),
+        ("MPU-9250", "100 Hz", "30 Hz", (3, 9)),
+        ("MPU-6050", "1 kHz", "DLPF 0", (0, 7)),
+        ("MPU-6050", "8 kHz", "DLPF 0", (0, 0)),
+        ("MPU-6050", "2 kHz", "", (0, 3)),
+        ("MPU-6050", "50 Hz", "DLPF 5", (5, 19)),
+        ("MPU-6050", "4 Hz", "DLPF 0", (1, 249)),
+    ] {
+        let filter = if filter.is_empty() { String::new() } else { format!("filter = \"{filter}\"\n") };
+        let scene = format!("duration = \"0.5 s\"\n[gyro]\npart = \"{part}\"\nrate = \"{rate}\"\n{filter}");
+        let (low_pass, divider, who) = config(&scene);
+        assert_eq!((low_pass, divider), expected, "{part} {rate} {filter}");
+        let chip = registers::Chip::from_who_am_i(who).unwrap();
+        let hz = plan(&scene).sensors[0].rate.as_hz();
+        assert!((chip.sample_rate_hz(low_pass, divider) / hz - 1.0).abs() < 1e-12, "{part} {rate} {filter}");
+        assert_eq!(config(&plan(&scene).resolved), (low_pass, divider, who), "as resolved");
+    }
+}
+
+#[test]
 fn mpu_sends_gyro_and_accel_apart_when_their_rates_differ_or_it_is_asked_to() {
     let scenes = [(NOISY.replacen("200 Hz", "250 Hz", 1), None), (NOISY.to_string(), Some(Layout::Separate))];
     for (scene, layout) in scenes {
