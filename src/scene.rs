@@ -135,6 +135,12 @@ impl Plan {
         self.sensors.iter().flat_map(of).collect()
     }
 
+    /// Every fault that the scene asks for: `gyro stuck from 2 s to 3 s`, `drop from 2 s of every output`.
+    pub fn faults(&self) -> Vec<String> {
+        let of_outputs = self.output_faults.iter().map(OutputFault::to_string);
+        self.faults_until(SimTime::FOREVER).into_iter().chain(of_outputs).collect()
+    }
+
     /// The scene as resolved, lasting until `end`, with the reference as it was settled: playing it gives the bytes of
     /// a run that ended there.
     pub fn resolved_until(&self, end: SimTime, reference: Option<&Reference>) -> String {

@@ -70,6 +70,7 @@ pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
         "sensors": sensors.collect::<Vec<_>>(),
         "effects": effects(plan),
         "links": links.collect::<Vec<_>>(),
+        "faults": plan.faults(),
         "limits": plan.limits.iter().map(|(limit, _)| limit).collect::<Vec<_>>(),
         "drawn": plan.drawn,
         "warnings": warnings(plan),

@@ -22,6 +22,9 @@ pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
     if !plan.outputs.is_empty() {
         text += &format!("\n{}", outputs(plan));
     }
+    for fault in plan.faults() {
+        text += &format!("fault: {fault}\n");
+    }
     for (limit, _) in &plan.limits {
         text += &format!("limit: {limit}\n");
     }
