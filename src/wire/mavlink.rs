@@ -175,3 +175,6 @@ impl Encoder for Mavlink {
         self.newest.waiting()
     }
 }
+
+#[cfg(test)]
+mod tests;
