@@ -348,7 +348,7 @@ const REST: &[Case] = &[
     ),
     (
         gyro!("[[output]]\nto = \"mpuu@pty\"\n"),
-        &[("5:6", "`mpuu` is no protocol of this version (mpu, mavlink, csv, jsonl); did you mean `mpu`?")],
+        &[("5:6", "`mpuu` is no protocol of this version (mpu, mavlink, |did you mean `mpu`?")],
     ),
     (
         gyro!("[reference]\nmethod = \"magnus\"\n"),

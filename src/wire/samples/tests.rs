@@ -304,6 +304,28 @@ fn a_damaged_packet_costs_itself_and_is_counted() {
 }
 
 #[test]
+fn damage_to_a_packet_without_a_number_costs_it_and_is_counted() {
+    let plan = plan(TOGETHER);
+    for protocol in [Protocol::Msp, Protocol::Vectornav, Protocol::Mip] {
+        let packets = &play(&plan, protocol, None).0[..16];
+        let whole = read(Samples::new(protocol), &bytes(packets), 64).0;
+        for hurt in [1, 4] {
+            for bit in 0..packets[hurt].bytes().len() * 8 {
+                let mut damaged: Vec<_> = packets.iter().map(|packet| packet.bytes().to_vec()).collect();
+                damaged[hurt][bit / 8] ^= 1 << (bit % 8);
+                let (samples, counts) = read(Samples::new(protocol), &damaged.concat(), 4096);
+                let cost = if packets[hurt].carries == 0 { 0 } else { 3 };
+                assert_eq!(samples.len(), whole.len() - cost, "{protocol:?} packet {hurt} bit {bit}");
+                // A frame of `msp` that goes the other way is a whole one that means something else.
+                let turned = protocol == Protocol::Msp && counts.foreign.contains_key("reply 8223");
+                assert_eq!(counts.damaged, u64::from(!turned), "{protocol:?} packet {hurt} bit {bit}");
+                assert_eq!(counts.lost, 0);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_stream_joined_midway_is_not_damaged_and_has_values_once_they_have_a_scale() {
     for (protocol, packets) in numbered() {
         let second = packets.iter().position(|packet| packet.due >= SimTime(crate::time::NANOS)).unwrap();
