@@ -10,10 +10,10 @@ mod mpu;
 pub mod samples;
 mod text;
 
-use crate::earth::Day;
-use crate::geometry::{Axes, Body, Vector};
+use crate::earth::{Day, Place};
+use crate::geometry::{Axes, Vector};
 use crate::schedule::{Schedule, Ticks};
-use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
+use crate::sensor::{ByKind, Fix, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
 
@@ -78,12 +78,21 @@ impl Protocol {
         Self::ALL.into_iter().find(|protocol| protocol.name() == name)
     }
 
+    /// Whether it has a place for readings of this kind.
+    pub const fn carries(self, kind: SensorKind) -> bool {
+        match self {
+            Protocol::Mpu => kind.is_triad(),
+            Protocol::Mavlink => kind.is_triad() || matches!(kind, SensorKind::Baro),
+            Protocol::Csv | Protocol::Jsonl => true,
+        }
+    }
+
     /// One line for `list protocols`.
     pub const fn about(self) -> &'static str {
         [
             "registers of an MPU-6050 or MPU-9250 in COBS frames with a CRC: imu, gyro, accel, mag, config",
-            "MAVLink 2: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second",
-            "t_ns,sensor,x,y,z: one line a reading, in the scene's axes",
+            "MAVLink 2: HIL_SENSOR (gyro, accel, mag, baro) at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second",
+            "t_ns,sensor,x,y,z: one line a reading, in the scene's axes (baro: Pa; gps: degrees, altitude, velocity)",
             "the same as one JSON object a line",
         ][self as usize]
     }
@@ -149,13 +158,40 @@ pub trait Encoder: Send {
     }
 }
 
-/// The encoder of a protocol.
+/// The encoder of a protocol; readings that it has no place for do not reach it.
 pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
-    match protocol {
+    let encoder: Box<dyn Encoder> = match protocol {
         Protocol::Mpu => Box::new(mpu::Mpu::new(setup)),
         Protocol::Mavlink => Box::new(mavlink::Mavlink::new(setup)),
         Protocol::Csv => Box::new(text::Text::csv(setup)),
         Protocol::Jsonl => Box::new(text::Text::jsonl(setup)),
+    };
+    match setup.sensors.iter().all(|sensor| protocol.carries(sensor.kind)) {
+        true => encoder,
+        false => Box::new(Picky { protocol, encoder, carried: Vec::new() }),
+    }
+}
+
+/// Hands on the readings of the kinds that the protocol carries.
+struct Picky {
+    protocol: Protocol,
+    encoder: Box<dyn Encoder>,
+    carried: Vec<Reading>,
+}
+
+impl Encoder for Picky {
+    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>) {
+        self.carried.clear();
+        self.carried.extend(readings.iter().filter(|reading| self.protocol.carries(reading.kind)));
+        self.encoder.encode(t, &self.carried, out);
+    }
+
+    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
+        self.encoder.farewell(t, out);
+    }
+
+    fn waiting(&self) -> ByKind<u64> {
+        self.encoder.waiting()
     }
 }
 
@@ -174,26 +210,32 @@ pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> R
     Ok(())
 }
 
-/// What a protocol cannot carry of these sensors, for `check` and the report: a sensor faster than the packets
-/// that carry it loses samples to newer ones.
+/// What a protocol cannot carry of these sensors, for `check` and the report: one that it has no place for is not
+/// sent, and one faster than the packets that carry it loses samples to newer ones.
 pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
-    let Some(carrier) = sensors.first().filter(|_| protocol == Protocol::Mavlink) else { return Vec::new() };
-    let faster = sensors.iter().filter(|sensor| sensor.rate.as_hz() > carrier.rate.as_hz());
-    faster
-        .map(|sensor| {
-            format!(
-                "mavlink sends HIL_SENSOR at each {} tick ({}): samples of {} ({}) between two of them are replaced by newer ones and counted as dropped",
-                carrier.kind, carrier.rate, sensor.kind, sensor.rate
-            )
-        })
-        .collect()
+    let (carried, left): (Vec<_>, Vec<_>) = sensors.iter().partition(|sensor| protocol.carries(sensor.kind));
+    let unsent = left.into_iter().map(|sensor| {
+        format!("{} has no place for {}: its readings are not sent", protocol.name(), sensor.kind)
+    });
+    let carrier = carried.first().copied().filter(|_| protocol == Protocol::Mavlink);
+    let faster = carried.into_iter().filter_map(|sensor| {
+        let carrier = carrier.filter(|carrier| sensor.rate.as_hz() > carrier.rate.as_hz())?;
+        Some(format!(
+            "mavlink sends HIL_SENSOR at each {} tick ({}): samples of {} ({}) between two of them are replaced by newer ones and counted as dropped",
+            carrier.kind, carrier.rate, sensor.kind, sensor.rate
+        ))
+    });
+    unsent.chain(faster).collect()
 }
 
 /// Bytes and packets a second, found by encoding ten seconds of the scene's own ticks. Text is as long as its
 /// numbers: these have as many digits as noise has.
 pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
-    const MANY_DIGITS: Vector<Body> =
-        Vector::new(-0.012_345_678_901_234_568, -0.012_345_678_901_234_568, -0.012_345_678_901_234_568);
+    const DIGITS: f64 = -0.012_345_678_901_234_568;
+    let value = Vector::new(DIGITS, DIGITS, DIGITS);
+    let position = Place { latitude: DIGITS, longitude: DIGITS, altitude: DIGITS };
+    let velocity = Vector::new(DIGITS, DIGITS, DIGITS);
+    let fix = Fix { position, velocity, true_position: position, true_velocity: velocity };
     let seconds = 10;
     let ticks = setup.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
     let mut encoder = encoder(protocol, setup);
@@ -202,8 +244,11 @@ pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
     for due in Schedule::new(ticks, SimTime(seconds * NANOS)) {
         readings.clear();
         let sensors = setup.sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
-        readings
-            .extend(sensors.map(|(i, plan)| Reading { value: MANY_DIGITS, ..Reading::zero(i, plan.kind) }));
+        readings.extend(sensors.map(|(i, plan)| Reading {
+            value,
+            fix: (plan.kind == SensorKind::Gps).then_some(fix),
+            ..Reading::zero(i, plan.kind)
+        }));
         packets.clear();
         encoder.encode(due.t, &readings, &mut packets);
         count += packets.len();

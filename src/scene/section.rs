@@ -4,6 +4,7 @@
 use super::document::{Entry, Node, Place, Table, Value};
 use super::reader::Reader;
 use super::suggest;
+use crate::double::Double;
 use crate::geometry::Axes;
 use crate::keys::{self, Key, Takes, Values};
 use crate::quantity::{self, Kind, QuantityError, Sign};
@@ -358,19 +359,14 @@ impl<'r> Section<'r> {
         self.measured(key, default, "5 s", |text| quantity::duration_ns(text, sign)).map(SimTime)
     }
 
-    /// A sensor's rate.
-    pub fn rate(&self, key: &'static str) -> Option<Rate> {
-        let (numerator, denominator) = self.measured(key, None, "100 Hz", quantity::rate)?;
+    /// A sensor's rate, or the default.
+    pub fn rate(&self, key: &'static str, default: Option<&str>) -> Option<Rate> {
+        let (numerator, denominator) = self.measured(key, default, "100 Hz", quantity::rate)?;
         Rate::new(numerator, denominator)
     }
 
     /// A vector of a kind, one number filling all three, to full precision.
-    pub fn vector(
-        &self,
-        key: &'static str,
-        kind: Kind,
-        default: Option<&str>,
-    ) -> Option<[crate::double::Double; 3]> {
+    pub fn vector(&self, key: &'static str, kind: Kind, default: Option<&str>) -> Option<[Double; 3]> {
         let example = format!("[1, 2, 3] {}", kind.units()[0]);
         self.measured(key, default, &example, |text| kind.vector(text))
     }
@@ -415,6 +411,15 @@ impl<'r> Section<'r> {
                 let [x, y, z] = self.vector(name, kind, zero(kind).as_deref())?;
                 keys::Value::Triple([x, y * sign, z * sign])
             }
+            Takes::NavVector(kind) => {
+                let given = self.vector(name, kind, zero(kind).as_deref())?;
+                keys::Value::Triple(nav_in(self.axes(), kind, given))
+            }
+            Takes::OneAxis(kind) => {
+                let text = zero(kind);
+                let x = self.measured(name, text.as_deref(), kind.example(), |text| kind.scalar(text))?;
+                keys::Value::Triple([x, Double::ZERO, Double::ZERO])
+            }
             Takes::Resolution(kind) => {
                 keys::Value::Resolution(
                     self.measured(name, key.default, kind.example(), |text| kind.resolution(text))?,
@@ -448,5 +453,14 @@ impl<'r> Section<'r> {
             self.reader.mistake(&entry.place, message);
         }
         self.resolved.into_inner()
+    }
+}
+
+/// A nav vector as written, taken inside: another order of axes, and down for up where it has a sign.
+pub(super) fn nav_in(axes: Axes, kind: Kind, [x, y, z]: [Double; 3]) -> [Double; 3] {
+    match axes {
+        Axes::NedFrd => [x, y, z],
+        Axes::EnuFlu if kind.is_magnitude() => [y, x, z],
+        Axes::EnuFlu => [y, x, -z],
     }
 }

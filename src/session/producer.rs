@@ -5,7 +5,7 @@ use crate::player::{BLOCK, Player};
 use crate::scene::{Output, Plan};
 use crate::sensor::ByKind;
 use crate::time::SimTime;
-use crate::wire::{self, Encoder, Packet, Setup, dialogue::Peer};
+use crate::wire::{self, Encoder, Packet, Protocol, Setup, dialogue::Peer};
 use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -43,6 +43,7 @@ pub(super) fn produce(
     let encoders: Vec<_> =
         outputs.iter().map(|output| wire::encoder(output.to.protocol, &setup(output))).collect();
     let mut maker = Maker {
+        protocols: outputs.iter().map(|output| output.to.protocol).collect(),
         samples: vec![ByKind::default(); outputs.len()],
         encoders,
         made: vec![0; outputs.len()],
@@ -60,6 +61,8 @@ pub(super) fn produce(
 }
 
 struct Maker<'a> {
+    /// Of each output; one that has no place for a sensor makes no samples of it.
+    protocols: Vec<Protocol>,
     encoders: Vec<Box<dyn Encoder>>,
     samples: Vec<ByKind<u64>>,
     made: Vec<u64>,
@@ -76,7 +79,7 @@ impl Maker<'_> {
         }
         self.items.clear();
         for (output, encoder) in self.encoders.iter_mut().enumerate() {
-            for reading in readings {
+            for reading in readings.iter().filter(|reading| self.protocols[output].carries(reading.kind)) {
                 self.samples[output][reading.kind as usize] += 1;
             }
             self.packets.clear();

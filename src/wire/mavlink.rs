@@ -1,9 +1,11 @@
 //! `mavlink`: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second.
 //!
 //! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
-//! before; the temperature of the first sensor that has one in the scene. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
+//! before; the temperature of the first sensor that has one in the scene, else the barometer's. Axes are
+//! Forward-Right-Down; the field is in gauss, which is 100 µT, pressure in hPa.
 
-use super::{Encoder, EverySecond, Newest, Packet, Setup};
+use super::{Encoder, EverySecond, Newest, Packet, Protocol, Setup};
+use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, Reading, SensorKind};
 use crate::time::SimTime;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
@@ -22,8 +24,11 @@ const ACTIVE: u8 = 4;
 const DIALECT_VERSION: u8 = 3;
 
 pub(super) const MICROTESLA_A_GAUSS: f64 = 100.0;
-/// The bits of `fields_updated` of gyro, accel and mag.
-pub(super) const MASKS: [u32; 3] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG];
+pub(super) const PASCALS_A_HECTOPASCAL: f64 = 100.0;
+/// The bits of `fields_updated` of gyro, accel, mag and baro.
+const MASKS: [u32; 4] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG, hil_sensor::PRESSURE];
+/// The kinds of sensor of which HIL_SENSOR has fields.
+const KINDS: u8 = 0b1111;
 
 pub(super) struct Mavlink {
     seq: u8,
@@ -42,7 +47,11 @@ impl Mavlink {
             seq: 0,
             seconds: EverySecond::default(),
             newest: Newest::default(),
-            carrier: setup.sensors.first().map(|sensor| sensor.kind),
+            carrier: setup
+                .sensors
+                .iter()
+                .map(|sensor| sensor.kind)
+                .find(|kind| Protocol::Mavlink.carries(*kind)),
             unix_us_at_start: setup.day.map(|day| day.unix_seconds() as u64 * 1_000_000),
             warm: setup
                 .sensors
@@ -86,18 +95,20 @@ impl Mavlink {
             self.newest.values[kind as usize]
                 .map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
         };
-        let fresh = (0..3).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
+        let fresh = (0..MASKS.len()).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
         let temperature = self.warm.and_then(|kind| self.newest.values[kind as usize]);
         let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
+        let baro = self.newest.values[SensorKind::Baro as usize];
+        let pressure = baro.map(|reading| reading.value.v.x);
         Message::HilSensor(hil_sensor::Repr {
             time_usec: t.0 as u64 / 1000,
             accel: value(SensorKind::Accel, 1.0),
             gyro: value(SensorKind::Gyro, 1.0),
             mag: value(SensorKind::Mag, MICROTESLA_A_GAUSS),
-            abs_pressure: 0.0,
+            abs_pressure: pressure.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
             diff_pressure: 0.0,
-            pressure_alt: 0.0,
-            temperature: temperature.map_or(0.0, |reading| reading.temperature as f32),
+            pressure_alt: pressure.map_or(0.0, |pascals| pressure_altitude(pascals) as f32),
+            temperature: temperature.or(baro).map_or(0.0, |reading| reading.temperature as f32),
             fields_updated: fresh.fold(0, |mask, bits| mask | bits),
             id: 0,
         })
@@ -114,7 +125,7 @@ impl Encoder for Mavlink {
             let message = self.hil_sensor(t);
             let mut buffer = [0; mavlink::MAX_LEN];
             let bytes = self.bytes(&message, &mut buffer);
-            out.push(self.newest.packet(t, 0b111, bytes));
+            out.push(self.newest.packet(t, KINDS, bytes));
         }
     }
 
