@@ -118,7 +118,7 @@ fn keys() -> String {
     }
     for sensor in SensorKind::ALL {
         text += &format!("[{sensor}]\n");
-        for (key, about) in scene::SENSOR_KEYS {
+        for (key, about) in scene::SENSOR_KEYS.iter().filter(|(key, _)| scene::takes(sensor, key)) {
             text += &format!("  {key}: {about}\n");
         }
         sensor::keys(sensor).iter().for_each(|key| text += &declared(key));
@@ -129,7 +129,12 @@ fn keys() -> String {
 /// A declared key with what it takes.
 fn declared(key: &Key) -> String {
     let takes = match key.takes {
-        Takes::Scalar(kind) | Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Resolution(kind) => {
+        Takes::Scalar(kind)
+        | Takes::PerAxis(kind)
+        | Takes::BodyVector(kind)
+        | Takes::NavVector(kind)
+        | Takes::OneAxis(kind)
+        | Takes::Resolution(kind) => {
             format!("{}, such as \"{}\"", kind.name(), kind.example())
         }
         Takes::Duration => "time, such as \"2 s\"".into(),

@@ -218,7 +218,7 @@ const SENSORS: &[Case] = &[
         "duration = \"1 s\"\n[[gyro]]\nrate = \"1 Hz\"\n",
         &[("2:1", "`gyro` is an array; write it as one table, [gyro]")],
     ),
-    ("duration = \"1 s\"\n", &[("1:1", "at least one sensor, [gyro], [accel] or [mag]")]),
+    ("duration = \"1 s\"\n", &[("1:1", "at least one sensor, [gyro], [accel], [mag], [baro] or [gps]")]),
 ];
 
 const MOTIONS: &[Case] = &[

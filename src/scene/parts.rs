@@ -2,8 +2,8 @@
 
 use super::document::{Entry, Mistake, Node, Table, Value};
 use crate::quantity::{self, Kind, Sign};
-use crate::sensor::SensorKind;
 use crate::sensor::parts::{Part, Sourced};
+use crate::sensor::{ByKind, SensorKind};
 use crate::time::{Rate, SimTime};
 use std::collections::BTreeMap;
 use std::f64::consts::{SQRT_2, TAU};
@@ -109,7 +109,7 @@ impl fmt::Display for Filter {
 pub(super) struct File {
     /// As written.
     pub table: Table,
-    settings: [Settings; SensorKind::ALL.len()],
+    settings: ByKind<Settings>,
 }
 
 impl File {
@@ -121,8 +121,11 @@ impl File {
             return Ok(file.clone());
         }
         let table = Table::parse(part.text, part.file)?;
-        let [gyro, accel, mag] = SensorKind::ALL.map(|kind| Settings::of(&table, kind));
-        let file = Arc::new(File { settings: [gyro?, accel?, mag?], table });
+        let mut settings = ByKind::<Settings>::default();
+        for kind in SensorKind::ALL {
+            settings[kind as usize] = Settings::of(&table, kind)?;
+        }
+        let file = Arc::new(File { settings, table });
         read.insert(part.file, file.clone());
         Ok(file)
     }

@@ -1,4 +1,4 @@
-//! `[gyro]`, `[accel]` and `[mag]`: rates, parts and error terms.
+//! `[gyro]`, `[accel]`, `[mag]`, `[baro]` and `[gps]`: rates, parts and error terms.
 
 use super::document::Value;
 use super::kalibr;
@@ -25,7 +25,7 @@ pub(super) fn sensors(top: &Section<'_>) -> Sensors {
             continue;
         }
         let mut section = top.table(kind.name());
-        let part = preset::part(&mut section, kind);
+        let part = if kind.is_triad() { preset::part(&mut section, kind) } else { None };
         if let Some(plan) = sensor(&section, kind, part, top.seed()) {
             sensors.plans.push(plan);
             sensors.resolved.push(section.finish());
@@ -44,20 +44,19 @@ fn sensor(
     seed: u64,
 ) -> Option<SensorPlan> {
     // A Kalibr file that could not be read would have had one.
-    if !section.has("rate") && !kalibr::is_meant(section) {
+    let usual = (kind == SensorKind::Gps).then_some("5 Hz");
+    if usual.is_none() && !section.has("rate") && !(kind.is_triad() && kalibr::is_meant(section)) {
         section.lacks(format!("[{kind}] needs a rate, such as rate = \"100 Hz\""));
     }
-    let rate = section.rate("rate");
+    let rate = section.rate("rate", usual);
     let phase = section.time("phase", Some("0 s"), Sign::NonNegative).unwrap_or(SimTime::ZERO);
-    let sampling = match section.word("sampling", &["point", "average"], "point") {
-        "average" => Sampling::Average,
-        _ => Sampling::Point,
-    };
-    let mount = mount(section);
+    let average = kind.is_triad() && section.word("sampling", &["point", "average"], "point") == "average";
+    let sampling = if average { Sampling::Average } else { Sampling::Point };
+    let mount = if kind.is_triad() { mount(section) } else { None };
     let keys = sensor::keys(kind);
     let values = section.values(&keys, true);
     // What a key or part that could not be read would have said is not missed a second time.
-    if section.unread(&keys, &values) || (section.has("part") && part.is_none()) {
+    if section.unread(&keys, &values) || (kind.is_triad() && section.has("part") && part.is_none()) {
         return None;
     }
     let any_rate = rate.unwrap_or(Rate::hz(1));

@@ -113,7 +113,7 @@ fn a_receiver_counts_exactly_what_was_injected() {
         let clean = play(name, "");
         let (none, all) = clean.received(protocol);
         assert_eq!((none.lost, none.damaged, none.duplicates, none.out_of_order), (0, 0, 0, 0), "control");
-        assert_eq!((all, clean.made.samples[0]), ([1000, 1000, 100], [1000, 1000, 100]));
+        assert_eq!((all, &clean.made.samples[0][..3]), ([1000, 1000, 100], &[1000, 1000, 100][..]));
         // In 500 ms: mpu has imu and mag packets, mavlink one for both.
         let n = if name == "mpu" { 550.0 } else { 500.0 };
         for (kind, p) in [("drop", 0.2), ("corrupt", 0.2), ("duplicate", 0.2), ("reorder", 0.2 / 1.2)] {
@@ -229,7 +229,7 @@ fn what_was_done_ahead_of_time_is_not_told() {
         (110, vec!["mpu@pty drop from 0.2 s to 0.7 s".into()])
     );
     made.faults[0][0].settle(plan.duration);
-    assert_eq!((made.faults[0][0].packets, made.samples[0]), (550, [500, 500, 50]));
+    assert_eq!((made.faults[0][0].packets, &made.samples[0][..3]), (550, &[500, 500, 50][..]));
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub(super) struct Mpu {
 impl Mpu {
     pub(super) fn new(setup: &Setup<'_>) -> Mpu {
         let plan = |kind| setup.sensors.iter().find(|sensor| sensor.kind == kind);
-        let [gyro, accel, mag] = SensorKind::ALL.map(plan);
+        let [gyro, accel, mag] = SensorKind::TRIADS.map(plan);
         let is_60x0 = [gyro, accel].into_iter().flatten().any(|sensor| sensor.part == Some("MPU-6050"));
         let chip = if is_60x0 { Chip::Mpu60x0 } else { Chip::Mpu9250 };
         let (gyro_config, gyro_count) = gyro_scale(gyro);
@@ -85,7 +85,7 @@ impl Mpu {
 
     /// Of the die, °C: the gyro's where there is one.
     fn temperature(&self) -> f64 {
-        let [gyro, accel, _] = &self.newest.values;
+        let [gyro, accel, ..] = &self.newest.values;
         gyro.as_ref().or(accel.as_ref()).map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature)
     }
 
@@ -97,8 +97,10 @@ impl Mpu {
         })
     }
 
-    fn alone(&self, kind: SensorKind) -> mpu::Packet {
-        match kind {
+    /// The newest reading by itself; nothing of a sensor that no chip of these has.
+    fn alone(&self, kind: SensorKind) -> Option<mpu::Packet> {
+        Some(match kind {
+            SensorKind::Baro | SensorKind::Gps => return None,
             SensorKind::Gyro => mpu::Packet::Gyro(gyro::Repr { gyro: self.counts(kind) }),
             SensorKind::Accel => mpu::Packet::Accel(accel::Repr { accel: self.counts(kind) }),
             SensorKind::Mag => {
@@ -117,7 +119,7 @@ impl Mpu {
                     st2: registers::ST2_16_BIT | overflow,
                 })
             }
-        }
+        })
     }
 }
 
@@ -133,8 +135,9 @@ impl Encoder for Mpu {
             self.push(t, IMU, &self.imu(), out);
         }
         for kind in readings.iter().map(|reading| reading.kind) {
-            if self.burst.is_none() || kind == SensorKind::Mag {
-                self.push(t, 1 << kind as u8, &self.alone(kind), out);
+            let alone = self.alone(kind).filter(|_| self.burst.is_none() || kind == SensorKind::Mag);
+            if let Some(packet) = alone {
+                self.push(t, 1 << kind as u8, &packet, out);
             }
         }
     }

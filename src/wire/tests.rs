@@ -457,7 +457,7 @@ fn protocols_have_names_and_a_burst_needs_both_sensors() {
     assert!(check(Protocol::Mpu, &Options::default(), &gyro.sensors).is_ok());
 }
 
-/// A sensor's ticks, of any of three kinds.
+/// A sensor's ticks, where there is one.
 fn any_ticks() -> impl Strategy<Value = Option<(u64, u64, i64)>> {
     prop_oneof![1 => Just(None), 3 => (1..400u64, 1..7u64, 0..300_000_000i64).prop_map(Some)]
 }
@@ -467,7 +467,7 @@ proptest! {
 
     #[test]
     fn every_sample_is_carried_once_or_counted_as_replaced(
-        ticks in [any_ticks(), any_ticks(), any_ticks()],
+        ticks in [any_ticks(), any_ticks(), any_ticks(), any_ticks(), any_ticks()],
         protocol in prop::sample::select(Protocol::ALL.to_vec()),
         layout in prop::sample::select(vec![None, Some(Layout::Separate), Some(Layout::Burst)]),
     ) {
@@ -486,14 +486,15 @@ proptest! {
         prop_assume!(check(protocol, &options, &sensors).is_ok());
         let setup = Setup { sensors: &sensors, axes: Axes::NedFrd, day: None, options, peer: Peer::default() };
         let mut encoder = encoder(protocol, &setup);
-        let (mut packets, mut made) = (Vec::new(), [0u64; 3]);
+        let (mut packets, mut made) = (Vec::new(), ByKind::<u64>::default());
         let end = SimTime(3 * NANOS);
         let due = Schedule::new(sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase }), end);
-        let (mut carried, mut replaced, mut seen) = ([0u64; 3], [0u64; 3], 0);
+        let (mut carried, mut replaced, mut seen) = (ByKind::<u64>::default(), ByKind::<u64>::default(), 0);
         for due in due {
             let ticked = sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
             let readings: Vec<_> = ticked.map(|(i, sensor)| Reading::zero(i, sensor.kind)).collect();
-            readings.iter().for_each(|reading| made[reading.kind as usize] += 1);
+            let taken = readings.iter().filter(|reading| protocol.carries(reading.kind));
+            taken.for_each(|reading| made[reading.kind as usize] += 1);
             encoder.encode(&Now { t: due.t, truth: &at_rest(due.t), readings: &readings }, &mut packets);
             for packet in &packets[seen..] {
                 for (kind, (carried, replaced)) in carried.iter_mut().zip(&mut replaced).enumerate() {
@@ -503,7 +504,7 @@ proptest! {
             }
             seen = packets.len();
             let waiting = encoder.waiting();
-            let accounted = [0, 1, 2].map(|kind| carried[kind] + replaced[kind] + waiting[kind]);
+            let accounted: ByKind<u64> = std::array::from_fn(|kind| carried[kind] + replaced[kind] + waiting[kind]);
             prop_assert_eq!(made, accounted, "{:?} at {}", protocol, due.t);
         }
         prop_assert!(packets.windows(2).all(|pair| pair[0].due <= pair[1].due));
@@ -533,4 +534,97 @@ fn packets_report_the_temperature_of_a_part_that_warms_up() {
         }
     }
     assert_eq!(told, 400);
+}
+
+/// A climbing vehicle with every sensor.
+const AIDED: &str = "seed = 5\nduration = \"3 s\"\n[earth]\nlatitude = \"59.93 deg\"\nlongitude = \"30.31 deg\"\naltitude = \"120 m\"\ndate = \"2026-11-22\"\n[start]\nvelocity = \"[10, 0, -5] m/s\"\n[gyro]\nrate = \"100 Hz\"\nnoise_std = \"1 deg/s\"\n[accel]\nrate = \"100 Hz\"\n[baro]\nrate = \"25 Hz\"\nnoise_std = \"3 Pa\"\ntemperature = \"31 degC\"\n[gps]\nrate = \"5 Hz\"\nnoise_std = \"1 m\"\n";
+
+#[test]
+fn mavlink_has_the_pressure_with_its_bits_where_the_barometer_ticked() {
+    let untold = AIDED.replace("temperature = \"31 degC\"\n", "");
+    for (scene, degrees) in [(AIDED, 31.0), (&untold, 25.0)] {
+        let (packets, readings) = play(&plan(scene), Protocol::Mavlink, None);
+        let baro = of(&readings, SensorKind::Baro);
+        let mut ticked = 0;
+        for (packet, message) in flown(&packets) {
+            let Message::HilSensor(seen) = message else { continue };
+            let ticks = baro.iter().any(|(t, _)| *t == packet.due);
+            let (_, newest) = baro.iter().rfind(|(t, _)| *t <= packet.due).unwrap();
+            let pascals = newest.value.v.x;
+            assert_eq!(seen.abs_pressure, (pascals / 100.0) as f32);
+            assert_eq!(seen.pressure_alt, crate::earth::pressure_altitude(pascals) as f32);
+            assert_eq!(seen.temperature, degrees);
+            let told = if degrees == 31.0 { hil_sensor::TEMPERATURE } else { 0 };
+            let expected = if ticks { 0x1A00 } else { told };
+            assert_eq!(seen.fields_updated & 0x1E00, expected, "{}", packet.due);
+            assert_eq!(packet.carries >> SensorKind::Baro as u8 & 1 == 1, ticks);
+            ticked += u32::from(ticks);
+        }
+        assert_eq!(ticked, 75);
+    }
+}
+
+#[test]
+fn what_a_protocol_has_no_place_for_is_said_and_not_sent() {
+    let aided = plan(AIDED);
+    let said = |protocol| warnings(protocol, &aided.sensors);
+    let mpu = said(Protocol::Mpu);
+    assert!(mpu.len() == 2 && mpu[0].contains("no place for baro") && mpu[1].contains("gps"), "{mpu:?}");
+    assert!(said(Protocol::Mavlink)[0].contains("no place for gps"));
+    assert!(said(Protocol::Csv).is_empty() && said(Protocol::Jsonl).is_empty());
+    let bare = AIDED.split("[baro]").next().unwrap();
+    let bytes = |scene: &str| -> Vec<u8> {
+        let (packets, _) = play(&plan(scene), Protocol::Mpu, None);
+        packets.iter().flat_map(|packet| packet.bytes().to_vec()).collect()
+    };
+    assert!(bytes(AIDED) == bytes(bare), "an added sensor leaves the stream as it was");
+}
+
+#[test]
+fn a_line_of_text_has_what_the_aid_says() {
+    let (packets, readings) = play(&plan(AIDED), Protocol::Csv, None);
+    let text = |packet: &Packet| String::from_utf8(packet.bytes().to_vec()).unwrap();
+    assert_eq!(text(&packets[0]), "t_ns,sensor,x,y,z,vn,ve,vd\n");
+    let sent = packets[1..].iter().map(text).zip(&readings);
+    let mut seen = 0;
+    for (line, (t, reading)) in sent {
+        let cells: Vec<&str> = line.trim_end_matches('\n').split(',').collect();
+        assert_eq!((cells[0].parse(), cells[1]), (Ok(t.0), reading.kind.name()));
+        match reading.kind {
+            SensorKind::Baro => {
+                assert_eq!(cells[2].parse(), Ok(reading.value.v.x));
+                assert_eq!(cells[3..], ["", ""]);
+            }
+            SensorKind::Gps => {
+                let fix = reading.fix.unwrap();
+                assert_eq!(cells[2].parse(), Ok(fix.position.latitude.to_degrees()));
+                assert_eq!(cells[3].parse(), Ok(fix.position.longitude.to_degrees()));
+                assert_eq!(cells[4].parse(), Ok(fix.position.altitude));
+                assert_eq!(
+                    [cells[5], cells[6], cells[7]].map(|cell| cell.parse::<f64>().unwrap()),
+                    [10.0, 0.0, -5.0]
+                );
+            }
+            _ => continue,
+        }
+        seen += 1;
+    }
+    assert_eq!(seen, 75 + 15);
+    // The longest numbers there are still fit a packet.
+    let longest = f64::from_bits(0x800f_ffff_ffff_fffe);
+    let place = Place {
+        latitude: -1.234_567_890_123_456_7e-100,
+        longitude: -1.234_567_890_123_456_7e-100,
+        altitude: longest,
+    };
+    let velocity = Vector::new(longest, longest, longest);
+    let fix = Fix { position: place, velocity, true_position: place, true_velocity: velocity };
+    let reading = Reading { fix: Some(fix), ..Reading::zero(0, SensorKind::Gps) };
+    let plan = plan("duration = \"1 s\"\n[gps]\n");
+    let mut lines = Vec::new();
+    encoder(Protocol::Jsonl, &setup(&plan, None)).encode(
+        &Now { t: SimTime(i64::MAX), truth: &at_rest(SimTime::ZERO), readings: &[reading] },
+        &mut lines,
+    );
+    assert!(lines[0].bytes().ends_with(b"}\n"), "{}", text(&lines[0]));
 }
