@@ -1,12 +1,12 @@
 //! What a sample, a packet and a run cost. `cargo bench --bench emulator` prints time and elements a second; docs/benchmarks.md has the figures.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use ratetable::motion::Truth;
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::{Output, Plan};
 use ratetable::sensor::Reading;
 use ratetable::session::{self, Event, Job, Speed};
-use ratetable::time::SimTime;
-use ratetable::wire::{self, Options, Protocol, Setup};
+use ratetable::wire::{self, Now, Options, Protocol, Setup};
 use std::convert::Infallible;
 use std::hint::black_box;
 use std::io::Read;
@@ -18,11 +18,11 @@ fn plan(scene: &str) -> Plan {
     Plan::load(scene, &[]).expect("a built-in scene")
 }
 
-/// Every reading of a scene with the time it is due.
-fn readings(plan: &Plan) -> Vec<(SimTime, Vec<Reading>)> {
+/// Every reading of a scene with the truth when it is due.
+fn readings(plan: &Plan) -> Vec<(Truth, Vec<Reading>)> {
     let mut all = Vec::new();
     let _ = Player::new(plan, plan.duration, BLOCK).play(|moment| {
-        all.push((moment.t, moment.readings.to_vec()));
+        all.push((*moment.truth, moment.readings.to_vec()));
         Ok::<(), Infallible>(())
     });
     all
@@ -64,9 +64,9 @@ fn packets(criterion: &mut Criterion) {
     for protocol in Protocol::ALL {
         let encode = || {
             let (mut encoder, mut packets, mut count) = (wire::encoder(protocol, &setup), Vec::new(), 0);
-            for (t, readings) in &readings {
+            for (truth, readings) in &readings {
                 packets.clear();
-                encoder.encode(*t, readings, &mut packets);
+                encoder.encode(&Now { t: truth.t, truth, readings }, &mut packets);
                 count += packets.len();
             }
             count

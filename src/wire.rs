@@ -10,8 +10,9 @@ mod mpu;
 pub mod samples;
 mod text;
 
-use crate::earth::Day;
-use crate::geometry::{Axes, Body, Vector};
+use crate::earth::{Day, STANDARD_GRAVITY, default_field};
+use crate::geometry::{Attitude, Axes, Body, Vector};
+use crate::motion::Truth;
 use crate::schedule::{Schedule, Ticks};
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
@@ -135,10 +136,21 @@ pub struct Setup<'a> {
     pub peer: Peer,
 }
 
+/// What an encoder is told of one moment of the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Now<'a> {
+    /// When.
+    pub t: SimTime,
+    /// What is true then, for packets that carry truth.
+    pub truth: &'a Truth,
+    /// The readings due then, in the order of sensors.
+    pub readings: &'a [Reading],
+}
+
 /// Turns readings into packets, in order of time.
 pub trait Encoder: Send {
-    /// Appends the packets of the readings due at `t`, and whatever the protocol sends besides.
-    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>);
+    /// Appends the packets of the readings due now, and whatever the protocol sends besides.
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>);
 
     /// What the other side is left with, at the very end: appends the packets of a vehicle that has stopped at `t`.
     fn farewell(&mut self, _t: SimTime, _out: &mut Vec<Packet>) {}
@@ -205,11 +217,22 @@ pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
         readings
             .extend(sensors.map(|(i, plan)| Reading { value: MANY_DIGITS, ..Reading::zero(i, plan.kind) }));
         packets.clear();
-        encoder.encode(due.t, &readings, &mut packets);
+        encoder.encode(&Now { t: due.t, truth: &at_rest(due.t), readings: &readings }, &mut packets);
         count += packets.len();
         bytes += packets.iter().map(|packet| packet.bytes().len()).sum::<usize>();
     }
     (bytes as f64 / seconds as f64, count as f64 / seconds as f64)
+}
+
+/// A vehicle that stands level, facing north, where nothing else is known of the scene.
+fn at_rest(t: SimTime) -> Truth {
+    Truth {
+        t,
+        attitude: Attitude::IDENTITY,
+        rate: Vector::ZERO,
+        force: Vector::new(0.0, 0.0, -STANDARD_GRAVITY),
+        field: Vector::from_vec(default_field().v),
+    }
 }
 
 /// Something sent once a second from t = 0, in scene time.

@@ -35,8 +35,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     // reading is what they are sizes beside, and a report's short numbers stand in their notes.
     ("effects", &["scene", "player", "motion", "sensor", "earth", "report"]),
     ("clock", &["os"]),
-    // A config packet is in scene time and SYSTEM_TIME carries the scene's date; the load is counted over ticks.
-    ("wire", &["sensor", "earth", "schedule"]),
+    // Some packets carry the truth. A config packet is in scene time and SYSTEM_TIME carries the scene's date; the
+    // load is counted over ticks.
+    ("wire", &["motion", "sensor", "earth", "schedule"]),
     // A pty that plays a UART takes its time.
     ("link", &["os", "clock"]),
     ("score", &[]),

@@ -1,11 +1,11 @@
 //! The producer thread: plays the plan, encodes, and keeps the ring full.
 
 use super::{Item, Shared};
-use crate::player::{BLOCK, Player};
+use crate::player::{BLOCK, Moment, Player};
 use crate::scene::{Output, Plan};
 use crate::sensor::ByKind;
 use crate::time::SimTime;
-use crate::wire::{self, Encoder, Packet, Setup, dialogue::Peer};
+use crate::wire::{self, Encoder, Now, Packet, Setup, dialogue::Peer};
 use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -53,7 +53,7 @@ pub(super) fn produce(
     };
     let mut player = Player::new(plan, end, BLOCK);
     // Stopping early is no failure: what was made is counted either way.
-    let _ = player.play(|moment| maker.make(moment.t, moment.readings));
+    let _ = player.play(|moment| maker.make(moment));
     shared.all_made.store(true, Ordering::Release);
     let waiting = maker.encoders.iter().map(|encoder| encoder.waiting()).collect();
     Made { samples: maker.samples, waiting, packets: maker.made }
@@ -70,7 +70,7 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn make(&mut self, t: SimTime, readings: &[crate::sensor::Reading]) -> Result<(), Stopped> {
+    fn make(&mut self, Moment { t, truth, readings }: Moment<'_>) -> Result<(), Stopped> {
         if self.shared.stopped() {
             return Err(Stopped);
         }
@@ -80,7 +80,7 @@ impl Maker<'_> {
                 self.samples[output][reading.kind as usize] += 1;
             }
             self.packets.clear();
-            encoder.encode(t, readings, &mut self.packets);
+            encoder.encode(&Now { t, truth, readings }, &mut self.packets);
             self.made[output] += self.packets.len() as u64;
             self.items.extend(self.packets.iter().map(|&packet| Item { output, packet }));
         }

@@ -208,7 +208,8 @@ fn encoded(plan: &Plan, protocol: &str, block: usize) -> Vec<u8> {
     let mut encoder = wire::encoder(Protocol::from_name(protocol).unwrap(), &setup);
     let mut packets = Vec::new();
     let played = Player::new(plan, plan.duration, block).play(|moment| {
-        encoder.encode(moment.t, moment.readings, &mut packets);
+        let now = wire::Now { t: moment.t, truth: moment.truth, readings: moment.readings };
+        encoder.encode(&now, &mut packets);
         Ok::<(), Infallible>(())
     });
     assert!(played.is_ok());

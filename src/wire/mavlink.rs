@@ -3,8 +3,8 @@
 //! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
 //! before; the temperature of the first sensor that has one in the scene. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
 
-use super::{Encoder, EverySecond, Newest, Packet, Setup};
-use crate::sensor::{ByKind, Reading, SensorKind};
+use super::{Encoder, EverySecond, Newest, Now, Packet, Setup};
+use crate::sensor::{ByKind, SensorKind};
 use crate::time::SimTime;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
 
@@ -105,7 +105,8 @@ impl Mavlink {
 }
 
 impl Encoder for Mavlink {
-    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>) {
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        let Now { t, readings, .. } = *now;
         for second in self.seconds.due(t) {
             self.every_second(second, out);
         }

@@ -3,7 +3,7 @@
 //! Readings become counts on the chip's axes. A sensor whose scene gives no such scale is carried at ±2000 °/s,
 //! ±16 g and 0.15 µT with ASA 128, and 25 °C.
 
-use super::{Encoder, EverySecond, Layout, Newest, Packet, Setup};
+use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup};
 use crate::earth::STANDARD_GRAVITY;
 use crate::sensor::{ByKind, Mount, REFERENCE_TEMPERATURE, Reading, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
@@ -125,7 +125,8 @@ impl Mpu {
 }
 
 impl Encoder for Mpu {
-    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>) {
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        let Now { t, readings, .. } = *now;
         for second in self.seconds.due(t) {
             let config = mpu::Packet::Config(self.config);
             self.push(second, 0, &config, out);

@@ -33,7 +33,7 @@ pub(super) fn play(
     let mut encoder = encoder(protocol, &setup(plan, layout));
     let (mut packets, mut readings) = (Vec::new(), Vec::new());
     let played: Result<(), ()> = Player::new(plan, plan.duration, 256).play(|moment| {
-        encoder.encode(moment.t, moment.readings, &mut packets);
+        encoder.encode(&Now { t: moment.t, truth: moment.truth, readings: moment.readings }, &mut packets);
         readings.extend(moment.readings.iter().map(|reading| (moment.t, *reading)));
         Ok(())
     });
@@ -462,7 +462,7 @@ proptest! {
             let ticked = sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
             let readings: Vec<_> = ticked.map(|(i, sensor)| Reading::zero(i, sensor.kind)).collect();
             readings.iter().for_each(|reading| made[reading.kind as usize] += 1);
-            encoder.encode(due.t, &readings, &mut packets);
+            encoder.encode(&Now { t: due.t, truth: &at_rest(due.t), readings: &readings }, &mut packets);
             for packet in &packets[seen..] {
                 for (kind, (carried, replaced)) in carried.iter_mut().zip(&mut replaced).enumerate() {
                     *carried += u64::from(packet.carries >> kind & 1);

@@ -1,6 +1,6 @@
 //! `csv` and `jsonl`: one line a reading, for eyes, plotters and quick scripts.
 
-use super::{Encoder, Packet, Setup};
+use super::{Encoder, Now, Packet, Setup};
 use crate::geometry::Axes;
 use crate::sensor::Reading;
 use crate::time::SimTime;
@@ -45,7 +45,8 @@ impl Text {
 }
 
 impl Encoder for Text {
-    fn encode(&mut self, t: SimTime, readings: &[Reading], out: &mut Vec<Packet>) {
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        let Now { t, readings, .. } = *now;
         if let Some(header) = self.header.take() {
             out.push(Packet::new(t, 0, header.as_bytes()));
         }

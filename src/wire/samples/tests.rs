@@ -4,7 +4,7 @@ use super::*;
 use crate::scene::Plan;
 use crate::sensor::Reading;
 use crate::wire::tests::{NOISY, plan, play};
-use crate::wire::{Layout, Packet};
+use crate::wire::{Layout, Now, Packet, at_rest};
 use proptest::prelude::*;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, highres_imu, raw_imu, scaled_imu};
 use std::sync::OnceLock;
@@ -298,7 +298,8 @@ fn time_goes_on_where_the_packets_clock_wraps() {
     for k in 0..400i64 {
         let t = SimTime(4_294_000_000_000 + k * 100_000_000);
         times.push(Some(t));
-        encoder.encode(t, &[Reading::zero(0, SensorKind::Gyro)], &mut packets);
+        let readings = [Reading::zero(0, SensorKind::Gyro)];
+        encoder.encode(&Now { t, truth: &at_rest(t), readings: &readings }, &mut packets);
     }
     let from = packets.iter().position(|packet| packet.due.0 >= 4_294_000_000_000).unwrap();
     let (samples, _) = read(Samples::new(Protocol::Mpu), &bytes(&packets[from..]), 64);
