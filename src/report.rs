@@ -31,7 +31,9 @@ pub struct Report {
     pub seed: u64,
     /// Scene time played, s.
     pub duration_s: f64,
-    /// For how long scene time stood still because a link was full (`overload = "stretch"`), s.
+    /// For how long the vehicle was held still before the scene began, s: in the counts, and not in `duration_s`.
+    pub rest_s: f64,
+    /// For how long scene time stood still because a link was full (`overload = "stretch"`) or a controller in lockstep took its time, s.
     pub stretched_s: f64,
     /// Scene seconds a second, or `max`.
     pub speed: serde_json::Value,
@@ -183,6 +185,8 @@ pub struct LinkReport {
     /// When the port was unplugged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaps: Option<Gaps>,
+    /// Packets that it took beside the stream: answers to the other side, requests, a farewell.
+    pub replies: u64,
     /// Damaged answers.
     pub crc_errors: u64,
     /// Packets the other side missed by their sequence numbers, where it is known.

@@ -18,8 +18,8 @@ use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
 
-/// The longest packet of any protocol, bytes.
-pub const MAX_PACKET: usize = 232;
+/// The longest packet of any protocol, bytes: a signed MAVLink 2 message, such as a ground station may send.
+pub const MAX_PACKET: usize = 280;
 
 /// One packet: when it is due, what it carries, its bytes. Plain data of fixed size, so that handing it over
 /// allocates nothing.

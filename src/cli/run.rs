@@ -25,7 +25,7 @@ const DEMO_SCENE: &str = "table-1";
 pub struct Arguments {
     /// A TOML file or the name of a built-in scene [default: table-1, in a demonstration]
     scene: Option<String>,
-    /// Where to: PROTOCOL@LINK, such as mpu@pty or mavlink@/dev/ttyACM0,921600; may be repeated
+    /// Where to: PROTOCOL@LINK or TARGET@LINK, such as mpu@pty or px4@/dev/ttyACM0; may be repeated
     #[arg(long = "to", value_name = "PROTOCOL@LINK", value_parser = options::output)]
     to: Vec<Output>,
     /// How much of the scene, such as 90s; longer than it lasts holds at the end [default: all of it]
@@ -37,6 +37,12 @@ pub struct Arguments {
     /// How long to wait for somebody on the other side; 0 starts at once
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = options::wait)]
     wait: Duration,
+    /// How long the vehicle is held still before the scene at the least, and then until the other side is ready [default: what a target needs]
+    #[arg(long, value_name = "TIME", value_parser = options::rest)]
+    rest: Option<SimTime>,
+    /// Pass the controller's other messages to and from a ground station over UDP
+    #[arg(long, value_name = "ADDR:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:14550", value_parser = options::ground)]
+    qgc: Option<Address>,
     /// Keep the pacing thread to this processor
     #[arg(long, value_name = "N", value_parser = options::processor)]
     cpu: Option<usize>,
@@ -61,13 +67,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
-    if arguments.scene.is_none() && !arguments.to.is_empty() {
-        return Err(Refusal(format!(
-            "--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones",
-            arguments.to[0].to
-        )));
-    }
-    let plan = Plan::load(arguments.scene.as_deref().unwrap_or(DEMO_SCENE), &arguments.set)?;
+    let plan = plan(arguments)?;
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
     let demonstration = outputs.is_empty();
     let outputs = if demonstration { vec![demo_output()] } else { outputs };
@@ -80,12 +80,14 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let job = Job {
         plan: plan.clone(),
         end: arguments.span.unwrap_or(plan.duration),
+        rest: rest(arguments.rest, &outputs),
+        ground: ground(arguments.qgc.clone(), &outputs)?,
+        estimator: estimator(demonstration, &outputs),
         outputs,
         speed: arguments.speed,
         wait: arguments.wait,
         command: arguments.command.clone(),
         keep_stdout: arguments.json,
-        estimator: if demonstration { "vqf".into() } else { "firmware".into() },
         cpu: arguments.cpu,
         watch: None,
         tap: None,
@@ -111,8 +113,50 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     })
 }
 
+/// The scene that is asked for, or the first target's, or the demonstration's.
+fn plan(arguments: &Arguments) -> Result<Plan, Refusal> {
+    let target = arguments.to.iter().find_map(|output| output.to.target);
+    let (scene, settings) = match (&arguments.scene, target, arguments.to.first()) {
+        (Some(scene), ..) => (scene.as_str(), &[][..]),
+        (None, Some(target), _) => (target.scene, target.settings),
+        (None, None, Some(output)) => {
+            return Err(Refusal(format!(
+                "--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones",
+                output.to
+            )));
+        }
+        (None, None, None) => (DEMO_SCENE, &[][..]),
+    };
+    let settings = settings.iter().map(|setting| setting.to_string());
+    Ok(Plan::load(scene, &settings.chain(arguments.set.iter().cloned()).collect::<Vec<_>>())?)
+}
+
+/// How long the vehicle is held still first: as told, or what the most demanding target needs.
+fn rest(told: Option<SimTime>, outputs: &[Output]) -> Option<SimTime> {
+    let needed = outputs.iter().filter_map(|output| Some(output.to.target?.rest)).max();
+    told.or(needed)
+}
+
+/// A ground station's address, and the output that it listens in on.
+fn ground(address: Option<Address>, outputs: &[Output]) -> Result<Option<(Address, usize)>, Refusal> {
+    let Some(address) = address else { return Ok(None) };
+    let with = outputs.iter().position(|output| output.to.protocol == Protocol::Mavlink);
+    with.map(|with| Some((address, with))).ok_or_else(|| {
+        Refusal(
+            "--qgc passes on MAVLink, and no output speaks it: add, for example, --to px4@/dev/ttyACM0"
+                .into(),
+        )
+    })
+}
+
+/// What the estimator on the other side is called.
+fn estimator(demonstration: bool, outputs: &[Output]) -> String {
+    let target = outputs.iter().find_map(|output| output.to.target);
+    target.map_or(if demonstration { "vqf" } else { "firmware" }, |target| target.name).into()
+}
+
 fn demo_output() -> Output {
-    Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None, baud: None } })
+    Output::to(Destination::new(Protocol::Mpu, Address::Pty { path: None, baud: None }))
 }
 
 /// What cannot go together, before anything is opened.
@@ -167,7 +211,7 @@ fn refuses(output: &Output) -> bool {
 
 fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {
     let bar = Bar::new(job.end);
-    let mut firmware = None;
+    let (mut firmware, mut held) = (None, false);
     let outcome = session::run(job, &mut |event| match event {
         Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
         Event::Ready(name) => {
@@ -178,6 +222,13 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
                 firmware = Some(Firmware::start(path, plan));
             }
         }
+        Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
+        Event::Silent(name) => bar.line(&format!("waiting for the controller on {name} to speak")),
+        Event::Still => {
+            held = true;
+            bar.line("holding still until the other side is ready");
+        }
+        Event::Started if held => bar.line("the scene starts"),
         Event::Started => {}
         Event::Progress(progress) => bar.live(&progress),
     });
@@ -219,6 +270,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         utilisation: None,
         paced_baud: None,
         gaps: Some(Gaps::default()),
+        replies: 0,
         crc_errors: 0,
         lost_seq: None,
         broken: None,
@@ -239,6 +291,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         scene: plan.name.clone(),
         seed: plan.seed,
         duration_s: 0.0,
+        rest_s: 0.0,
         stretched_s: 0.0,
         speed: Value::Null,
         faults: plan.faults_until(SimTime::FOREVER),
@@ -259,6 +312,7 @@ pub fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -
 
 pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.duration_s = outcome.played.seconds();
+    report.rest_s = outcome.rest_s;
     report.stretched_s = outcome.stretched_s;
     report.speed = match speed {
         Speed::Times(times) => times.into(),

@@ -17,9 +17,17 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     text += &sensors(report);
     text.push('\n');
     text += &links(report);
+    if report.rest_s > 0.0 {
+        text += &format!(
+            "held still for {} s before the scene: those samples are in the counts\n",
+            number(report.rest_s)
+        );
+    }
     if report.stretched_s > 0.0 {
-        text +=
-            &format!("scene time stood still for {} s while a link was full\n", number(report.stretched_s));
+        text += &format!(
+            "scene time stood still for {} s while a link was full or a controller took its time\n",
+            number(report.stretched_s)
+        );
     }
     for (link, gaps) in report.links.iter().filter_map(|link| Some((link, link.gaps?))) {
         text += &format!(

@@ -92,9 +92,7 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
 
 /// The one link that is measured.
 fn output(arguments: &Arguments, plan: &Plan) -> Result<Output, Refusal> {
-    let on_a_pty = || {
-        Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None, baud: None } })
-    };
+    let on_a_pty = || Output::to(Destination::new(Protocol::Mpu, Address::Pty { path: None, baud: None }));
     let output = match (&arguments.to, plan.outputs.as_slice()) {
         (Some(to), _) => to.clone(),
         (None, []) => on_a_pty(),
@@ -152,6 +150,8 @@ fn measure(
     let tap = arrivals.take_if(|_| far == Far::Loopback).map(|arrivals| tap(arrivals, heard.clone()));
     let job = Job {
         end: arguments.span,
+        rest: None,
+        ground: None,
         outputs: vec![output],
         speed: Speed::Times(1.0),
         wait: WAIT,
@@ -174,7 +174,7 @@ fn measure(
                 reader = Some(Reader::start(path.into(), arrivals));
             }
         }
-        Event::Started => {}
+        Event::Ground(_) | Event::Silent(_) | Event::Still | Event::Started => {}
         Event::Progress(progress) => bar.live(&progress),
     });
     bar.clear();

@@ -53,6 +53,8 @@ pub(super) struct Account<'a> {
     pub lookout: &'a Lookout,
     /// Damaged answers.
     pub damaged: &'a [u64],
+    /// Packets beside the stream that went out before it began.
+    pub replies: &'a [u64],
     /// The link whose reader left for good.
     pub abandoned: Option<usize>,
 }
@@ -86,6 +88,7 @@ impl Account<'_> {
                 dropped: gaps.dropped,
                 samples: gaps.samples,
             }),
+            replies: tally.replies + self.replies[i],
             crc_errors: self.damaged[i],
             lost_seq: None,
             broken: self.broken(i),

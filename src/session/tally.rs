@@ -91,6 +91,8 @@ pub(super) struct LinkTally {
     pub packets: u64,
     pub bytes: u64,
     pub dropped: u64,
+    /// Packets beside the stream: answers, requests, a farewell.
+    pub replies: u64,
     pub sensors: ByKind<SensorTally>,
     pub gaps: Gaps,
     /// When its first and its last packet were sent, ns, and the bytes of the last.
@@ -105,6 +107,7 @@ impl LinkTally {
             packets: 0,
             bytes: 0,
             dropped: 0,
+            replies: 0,
             sensors: Default::default(),
             gaps: Gaps::default(),
             first: 0,
