@@ -60,6 +60,8 @@ pub struct Options<'a> {
     pub formats: Vec<&'static Format>,
     /// Attitudes that the other side answered, in order of time; none = no `estimate.csv`.
     pub estimates: &'a [(SimTime, Attitude)],
+    /// The faults of outputs that acted in the run that this is of, for the manifest.
+    pub link_faults: &'a [String],
     /// Further files that the caller made, such as figures: a plain name and the contents.
     pub extra: &'a [(String, Vec<u8>)],
     /// Called now and then with the scene time that has been written.
@@ -77,6 +79,7 @@ impl<'a> Options<'a> {
             force: false,
             formats: vec![FORMATS[0]],
             estimates: &[],
+            link_faults: &[],
             extra: &[],
             progress,
             stop: None,
@@ -168,6 +171,7 @@ fn write_in_blocks(
         clipped: &clipped,
         quality: quality.as_ref(),
         run: options.run,
+        link_faults: options.link_faults,
     };
     folder.put("manifest.json", manifest::text(plan, end, &made, &folder)?.as_bytes())?;
     folder.commit()?;

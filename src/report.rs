@@ -15,6 +15,7 @@ pub use timing::{Baseline, SensorTiming, TimingReport};
 
 use crate::score::Score;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A run's report, one JSON object.
 #[derive(Clone, Debug, Serialize)]
@@ -37,7 +38,7 @@ pub struct Report {
     pub stretched_s: f64,
     /// Scene seconds a second, or `max`.
     pub speed: serde_json::Value,
-    /// The faults of sensors that acted: `gyro stuck from 2 s to 3 s`.
+    /// The faults that acted: `gyro stuck from 2 s to 3 s`, `mpu@pty drop from 2 s`.
     pub faults: Vec<String>,
     /// What it ran on.
     pub host: Host,
@@ -187,6 +188,9 @@ pub struct LinkReport {
     pub gaps: Option<Gaps>,
     /// Packets that it took beside the stream: answers to the other side, requests, a farewell.
     pub replies: u64,
+    /// Packets that each kind of fault acted on, of those its output has; not among `dropped`.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub faults: BTreeMap<&'static str, u64>,
     /// Damaged answers.
     pub crc_errors: u64,
     /// Packets the other side missed by their sequence numbers, where it is known.

@@ -9,6 +9,7 @@
 
 pub mod builtin;
 mod columns;
+mod declared;
 pub mod document;
 mod draw;
 mod faults;
@@ -17,6 +18,7 @@ mod fixed_keys;
 mod kalibr;
 mod keyframes;
 mod nested;
+mod numbers;
 mod output;
 pub mod parts;
 mod reader;
@@ -31,6 +33,7 @@ mod vehicle;
 
 pub use document::Place;
 pub use draw::Drawn;
+pub use faults::OutputFault;
 pub use file::Attached;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
 pub use output::{Destination, Output, Overload};
@@ -76,6 +79,8 @@ pub struct Plan {
     pub reference: Option<Reference>,
     /// Where the scene itself sends its packets.
     pub outputs: Vec<Output>,
+    /// What becomes of packets on their way: the scene's own outputs have these already, others are to be equipped.
+    pub output_faults: Vec<OutputFault>,
     /// Values drawn once for this run.
     pub drawn: Vec<Drawn>,
     /// Files that the scene as resolved names, which a copy of it needs beside it.
@@ -121,7 +126,7 @@ impl Plan {
         }
     }
 
-    /// The faults that acted on a sample before `end`: `gyro stuck from 2 s to 3 s`.
+    /// The faults of sensors that acted on a sample before `end`: `gyro stuck from 2 s to 3 s`.
     pub fn faults_until(&self, end: SimTime) -> Vec<String> {
         let of = |sensor: &SensorPlan| {
             let before = |t: SimTime| sensor.clock().ticks_before(sensor.phase, t);
@@ -191,12 +196,12 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     let motions = vehicle::motions(&top, earth.gravity.length(), &mut start);
     let forces = vehicle::forces(&top);
     let mut sensors = sensors::sensors(&top);
-    let outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
+    let mut outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
     let trajectory =
         Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
     let reference =
         reference::reference(&top, sensors.complete.then_some(&sensors.plans), &trajectory).unzip();
-    let faults = faults::faults(&top, &mut sensors.plans);
+    let faults = faults::faults(&top, &mut sensors.plans, &mut outputs.outputs);
     let moving = trajectory.moving_until();
     let default = (moving > SimTime::ZERO).then(|| moving.to_string());
     // What differs from run to run is the business of whoever makes several.
@@ -220,7 +225,9 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     for (key, table) in [("start", start.resolved), ("earth", earth.resolved)] {
         resolved.insert(key.into(), table.into());
     }
-    for (key, tables) in [("motion", motions.resolved), ("force", forces.resolved), ("fault", faults)] {
+    for (key, tables) in
+        [("motion", motions.resolved), ("force", forces.resolved), ("fault", faults.resolved)]
+    {
         if !tables.is_empty() {
             resolved.insert(key.into(), tables.into());
         }
@@ -246,6 +253,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         sensors: sensors.plans,
         reference: reference.0,
         outputs: outputs.outputs,
+        output_faults: faults.of_outputs,
         drawn: Vec::new(),
         attached: Vec::new(),
         warnings: Vec::new(),

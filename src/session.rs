@@ -151,6 +151,8 @@ pub struct Outcome {
     pub sensors: Vec<SensorReport>,
     /// Each link's counts.
     pub links: Vec<LinkReport>,
+    /// The faults of outputs that acted: `mpu@pty drop from 2 s to 3 s`.
+    pub faults: Vec<String>,
     /// What the other side estimated, judged.
     pub score: Option<Score>,
     /// Every estimate that came back.
@@ -265,6 +267,8 @@ impl Shared {
     }
 }
 
+#[cfg(test)]
+mod fault_tests;
 #[cfg(test)]
 mod talk_tests;
 #[cfg(test)]

@@ -5,10 +5,15 @@
 //! To add a protocol: one file in the `protocols` crate, one beside this one, and one line in [`Protocol`].
 
 pub mod dialogue;
+mod fault;
+mod faults;
 mod mavlink;
 mod mpu;
 pub mod samples;
 mod text;
+
+pub use fault::{Fault, FaultKind};
+pub use faults::{Acts, Faults};
 
 use crate::earth::{Day, STANDARD_GRAVITY, default_field};
 use crate::geometry::{Attitude, Axes, Body, Vector};
@@ -31,6 +36,9 @@ pub struct Packet {
     pub carries: u8,
     /// Samples of each kind that a newer one replaced before any packet carried them.
     pub replaced: ByKind<u32>,
+    /// How many of its bytes go out at once, the others a little later; 0 = all of them. Of a packet without bytes: how
+    /// many bytes of the one before go out then.
+    pub piece: u16,
     len: u16,
     bytes: [u8; MAX_PACKET],
 }
@@ -40,10 +48,26 @@ impl Packet {
     pub fn new(due: SimTime, carries: u8, bytes: &[u8]) -> Packet {
         debug_assert!(bytes.len() <= MAX_PACKET, "{} bytes", bytes.len());
         let len = bytes.len().min(MAX_PACKET);
-        let mut packet =
-            Packet { due, carries, replaced: ByKind::default(), len: len as u16, bytes: [0; MAX_PACKET] };
+        let mut packet = Packet {
+            due,
+            carries,
+            replaced: ByKind::default(),
+            piece: 0,
+            len: len as u16,
+            bytes: [0; MAX_PACKET],
+        };
         packet.bytes[..len].copy_from_slice(&bytes[..len]);
         packet
+    }
+
+    /// No packet, but a time at which something is due: `piece` bytes of the packet before that are held back, or 0.
+    pub fn nothing(due: SimTime, piece: u16) -> Packet {
+        Packet { piece, ..Packet::new(due, 0, &[]) }
+    }
+
+    /// Whether it is no packet.
+    pub fn is_nothing(&self) -> bool {
+        self.len == 0
     }
 
     /// Its bytes.

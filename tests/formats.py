@@ -119,8 +119,21 @@ def mcap(folder, tables, tally):
                 tally.wrong.append(f"{topic}.{field}: covariance {covariance}")
 
     gyro, accel = tables["gyro"], tables["accel"]
-    together = gyro["t_ns"] == accel["t_ns"]
-    imus = {"/imu/data_raw": (gyro, accel)} if together else {"/imu/gyro": (gyro, None), "/imu/accel": (None, accel)}
+    topic = "/imu/data_raw"
+    together = topics.pop(topic, [])
+    if together:
+        # Where a sample is missing the message says so, and holds the other one.
+        times = [m.log_time_ns for m in together]
+        tally.column(f"{topic}.log_time", sorted(times), sorted({*gyro["t_ns"], *accel["t_ns"]}))
+        got = [m.ros_msg for m in together]
+        holds(topic, got, "orientation", False)
+        for field, table, unit in (("angular_velocity", gyro, "rad_s"), ("linear_acceleration", accel, "m_s2")):
+            there = [m for m in got if getattr(m, field + "_covariance")[0] == 0.0]
+            stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in there]
+            tally.column(f"{topic}.{field}.stamp", stamps, table["t_ns"])
+            vector(topic, [getattr(m, field) for m in there], table, [f"{axis}_{unit}" for axis in "xyz"])
+
+    imus = {} if together else {"/imu/gyro": (gyro, None), "/imu/accel": (None, accel)}
     for topic, (rate, force) in imus.items():
         got = messages(topic, rate or force)
         holds(topic, got, "orientation", False)
@@ -133,6 +146,12 @@ def mcap(folder, tables, tally):
 
     got = messages("/imu/mag", tables["mag"])
     vector("/imu/mag", [m.magnetic_field for m in got], tables["mag"], ["x_ut", "y_ut", "z_ut"], MICRO)
+
+    for name, unit, factor in (("gyro", "rad_s", None), ("accel", "m_s2", None), ("mag", "ut", MICRO)):
+        for what in ("true", "bias"):
+            got = messages(f"/imu/{name}/{what}", tables[name])
+            columns = [f"{what}_{axis}_{unit}" for axis in "xyz"]
+            vector(f"{name}.{what}", [m.vector for m in got], tables[name], columns, factor)
 
     truth = tables["truth"]
     got = messages("/truth", truth)

@@ -83,15 +83,34 @@ fn read(python: &str, folder: &Path) -> Value {
     serde_json::from_str(&said).expect("a report")
 }
 
+/// Samples of either that the other one has.
+const WITHHELD: &str = r#"
+[[fault]]
+sensor = "gyro"
+kind = "intermittent"
+share = "20 %"
+[[fault]]
+sensor = "accel"
+kind = "intermittent"
+share = "20 %"
+[[fault]]
+sensor = "accel"
+kind = "off"
+start = "0.6 s"
+"#;
+
 #[test]
 fn other_readers_find_the_numbers_of_the_csv_bit_for_bit() {
     let Some(python) = python() else { return };
     let home = tempfile::tempdir().expect("a folder");
-    for (name, accel) in
-        [("alike", "rate = \"1125 Hz\""), ("apart", "rate = \"400/3 Hz\"\nphase = \"1.5 ms\"")]
-    {
+    let alike = scene("rate = \"1125 Hz\"");
+    for (name, scene) in [
+        ("withheld", format!("{alike}{WITHHELD}")),
+        ("alike", alike),
+        ("apart", scene("rate = \"400/3 Hz\"\nphase = \"1.5 ms\"")),
+    ] {
         let out = home.path().join(name);
-        write(&scene(accel), &out);
+        write(&scene, &out);
         let report = read(&python, &out);
         for format in others() {
             let found = &report[format.name];

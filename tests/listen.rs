@@ -188,6 +188,57 @@ fn injected_damage_and_loss_are_counted_exactly() {
 }
 
 #[test]
+fn faults_of_an_output_are_counted_at_the_other_end_of_a_pty_as_they_were_injected() {
+    for kind in ["", "drop", "corrupt", "duplicate", "reorder", "stall", "split"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("imu").display().to_string();
+        let fault =
+            format!("[[fault]]\noutput = 0\nkind = \"{kind}\"\nstart = \"0.5 s\"\nduration = \"1 s\"\n");
+        let share = if ["", "stall"].contains(&kind) { "" } else { "share = \"10 %\"\n" };
+        let scene = format!(
+            "duration = \"2 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"1 deg/s\"\n[accel]\nrate = \"1 kHz\"\n[[output]]\nto = \"mpu@pty:{path}\"\n{}{share}",
+            if kind.is_empty() { "" } else { &fault }
+        );
+        let file = folder.path().join("scene.toml").display().to_string();
+        std::fs::write(&file, scene).unwrap();
+        let run = start(&["run", &file, "--speed", "max", "--json"]);
+        let listen = start(&["listen", &format!("mpu@{path}"), "--json"]);
+        let ((sent_code, sent, text), (code, heard, _)) = (ended(run), ended(listen));
+        let acted = at(&sent, "links.0.faults").get(kind).map_or(0, |count| count.as_u64().unwrap());
+        // A share of 1000 imu packets and a config: 10 % within five standard deviations, all of a stall.
+        let bounds = match kind {
+            "" => 0..=0,
+            "stall" => 1001..=1001,
+            _ => 50..=150,
+        };
+        assert!(bounds.contains(&acted), "{kind}: {acted}");
+        let of = |injected: &[&str]| if injected.contains(&kind) { acted } else { 0 };
+        let counted = |field: &str| at(&heard, &format!("links.0.{field}")).as_u64().unwrap();
+        assert_eq!(counted("lost_seq"), of(&["drop", "corrupt"]), "{kind}");
+        assert_eq!(counted("crc_errors"), of(&["corrupt"]), "{kind}");
+        assert_eq!(counted("duplicates"), of(&["duplicate"]), "{kind}");
+        assert_eq!(counted("out_of_order"), of(&["reorder"]), "{kind}");
+        assert_eq!(counted("packets"), 2002 + of(&["duplicate"]) - of(&["drop", "corrupt"]), "{kind}");
+        assert_eq!(at(&sent, "links.0.bytes"), at(&heard, "links.0.bytes"), "{kind}");
+        let gyro = |field: &str| at(&heard, &format!("sensors.0.{field}")).as_u64().unwrap();
+        // Of the packets that are hurt or missing at most two are the config's.
+        let missing = gyro("missing");
+        assert!(
+            (of(&["drop", "corrupt"]) - missing.min(acted)) <= 1 && missing <= of(&["drop", "corrupt"]),
+            "{kind}"
+        );
+        assert_eq!(at(&sent, "links.0.dropped"), 0, "a fault is no loss of ours");
+        assert_eq!((sent_code, code), (0, i32::from(["drop", "corrupt"].contains(&kind))), "{kind}: {text}");
+        let told = format!("mpu@pty:{path} {kind} from 0.5 s to 1.5 s");
+        assert_eq!(
+            sent["faults"],
+            if kind.is_empty() { serde_json::json!([]) } else { serde_json::json!([told]) }
+        );
+        assert!(kind.is_empty() || text.contains(&format!("{kind} {acted}")), "{text}");
+    }
+}
+
+#[test]
 fn a_pipe_is_listened_to_as_it_comes() {
     let folder = tempfile::tempdir().unwrap();
     let (bytes, _) = recorded(folder.path(), "csv");

@@ -194,6 +194,7 @@ pub fn after_run(
     let options = Options {
         force,
         estimates: &outcome.estimates,
+        link_faults: &outcome.faults,
         extra: &[("report.json".to_string(), report.into_bytes())],
         ..Options::new(&mut progress)
     };

@@ -8,7 +8,7 @@ use crate::link::Address;
 use crate::report::{
     Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
 };
-use crate::scene::{Destination, Output, Overload, Plan};
+use crate::scene::{Destination, Output, OutputFault, Overload, Plan};
 use crate::score::Score;
 use crate::session::{self, Event, Job, Outcome, Speed};
 use crate::time::SimTime;
@@ -70,7 +70,10 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let plan = plan(arguments)?;
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
     let demonstration = outputs.is_empty();
-    let outputs = if demonstration { vec![demo_output()] } else { outputs };
+    let mut outputs = if demonstration { vec![demo_output()] } else { outputs };
+    for idle in OutputFault::equip(&plan.output_faults, &mut outputs) {
+        eprintln!("warning: the fault {idle} concerns no output of this run");
+    }
     let limits = options::limits(&arguments.limit, &plan)?;
     let mut report = shape(&plan, &outputs);
     let as_json = serde_json::to_value(&report)?;
@@ -94,7 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     };
     let (outcome, received) = play(job, &plan, demonstration)?;
     fill(&mut report, &outcome, arguments.speed);
-    report.faults = plan.faults_until(outcome.played);
+    report.faults = [plan.faults_until(outcome.played), outcome.faults.clone()].concat();
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
@@ -271,6 +274,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         paced_baud: None,
         gaps: Some(Gaps::default()),
         replies: 0,
+        faults: output.faults.iter().map(|fault| (fault.kind.name(), 0)).collect(),
         crc_errors: 0,
         lost_seq: None,
         broken: None,

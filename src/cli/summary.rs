@@ -53,6 +53,10 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             score.samples,
         );
     }
+    for link in report.links.iter().filter(|link| !link.faults.is_empty()) {
+        let counts: Vec<_> = link.faults.iter().map(|(kind, packets)| format!("{kind} {packets}")).collect();
+        text += &format!("packets that faults acted on, {}: {}\n", link.name, counts.join(", "));
+    }
     for fault in &report.faults {
         text += &format!("fault: {fault}\n");
     }
@@ -123,15 +127,20 @@ pub fn heard(report: &HeardReport, interrupted: bool) -> String {
         let rate = |value: Option<f64>, unit| {
             value.map_or(String::new(), |value| format!(", {}{unit}", number(value)))
         };
+        let some = |count: Option<u64>, what| {
+            count.filter(|count| *count > 0).map_or(String::new(), |count| format!(", {count} {what}"))
+        };
         let lost = link.lost_seq.map_or("no sequence numbers".into(), |lost| format!("{lost} lost"));
         text += &format!(
-            "{}: {} packets, {} bytes{}{}; {lost}, {} damaged\n",
+            "{}: {} packets, {} bytes{}{}; {lost}, {} damaged{}{}\n",
             link.name,
             link.packets,
             link.bytes,
             rate(link.bytes_per_s, " bytes/s"),
             rate(link.utilisation.map(|share| 100.0 * share), " % of the baud rate"),
             link.crc_errors,
+            some(link.duplicates, "twice"),
+            some(link.out_of_order, "out of order"),
         );
         let others: Vec<_> = link.foreign.iter().map(|(name, count)| format!("{name} {count}")).collect();
         if !others.is_empty() {

@@ -95,6 +95,7 @@ pub(super) struct Made<'a> {
     pub clipped: &'a [u64],
     pub quality: Option<&'a Quality>,
     pub run: Option<&'a Run>,
+    pub link_faults: &'a [String],
 }
 
 /// The manifest of a dataset whose other files are written.
@@ -104,7 +105,7 @@ pub(super) fn text(
     made: &Made<'_>,
     folder: &Folder,
 ) -> Result<String, DatasetError> {
-    let &Made { files, others, clipped, quality, run } = made;
+    let &Made { files, others, clipped, quality, run, link_faults } = made;
     let other = |&name| Ok(OtherEntry { name, sha256: checksum(&folder.path(name))? });
     let part = |sensor: &SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
     let manifest = Manifest {
@@ -119,7 +120,7 @@ pub(super) fn text(
         sensors: sensors(plan, files, clipped),
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
-        faults: plan.faults_until(end),
+        faults: [plan.faults_until(end), link_faults.to_vec()].concat(),
         run,
         reference: quality,
         files,

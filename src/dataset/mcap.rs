@@ -5,6 +5,7 @@
 //! | `/imu/data_raw` | `sensor_msgs/msg/Imu` | gyroscope and accelerometer, where both have the same ticks |
 //! | `/imu/gyro`, `/imu/accel` | the same | each by itself, where they have not |
 //! | `/imu/mag` | `sensor_msgs/msg/MagneticField` | magnetometer, in tesla |
+//! | `/imu/gyro/true`, `/imu/gyro/bias` … | `geometry_msgs/msg/Vector3Stamped` | error-free reading and bias in effect: rad/s, m/s², tesla |
 //! | `/truth`, `/truth/mag` | `Imu`, `MagneticField` | the exact attitude, angular rate, specific force and field |
 //! | `/reference`, `/estimate` | `geometry_msgs/msg/QuaternionStamped` | attitudes, where the dataset has them |
 //!
@@ -23,7 +24,7 @@ use crate::sensor::{SensorKind, SensorPlan};
 use crate::time::SimTime;
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapError, WriteOptions};
-use messages::{Imu, Kind, Stamped, imu, magnetic_field, quaternion};
+use messages::{Imu, Kind, Stamped, imu, magnetic_field, quaternion, vector};
 use std::collections::BTreeMap;
 
 pub(super) static FORMAT: Format = Format {
@@ -45,7 +46,7 @@ fn open(plan: &Plan, tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer
         frames: frames(plan.axes),
         shapes: shapes(plan, tables),
         channels: Vec::new(),
-        held: [0.0; 3],
+        held: None,
         bytes: Vec::with_capacity(512),
     };
     mcap.announce()?;
@@ -72,15 +73,29 @@ impl Shape {
     fn topics(self) -> Vec<(&'static str, Kind)> {
         match self {
             Shape::Truth => vec![("/truth", Kind::Imu), ("/truth/mag", Kind::MagneticField)],
-            Shape::Held => vec![],
-            Shape::Both => vec![("/imu/data_raw", Kind::Imu)],
-            Shape::Gyro => vec![("/imu/gyro", Kind::Imu)],
-            Shape::Accel => vec![("/imu/accel", Kind::Imu)],
-            Shape::Mag => vec![("/imu/mag", Kind::MagneticField)],
+            Shape::Held => with_errors(None, ["/imu/gyro/true", "/imu/gyro/bias"]),
+            Shape::Both => {
+                with_errors(Some(("/imu/data_raw", Kind::Imu)), ["/imu/accel/true", "/imu/accel/bias"])
+            }
+            Shape::Gyro => with_errors(Some(("/imu/gyro", Kind::Imu)), ["/imu/gyro/true", "/imu/gyro/bias"]),
+            Shape::Accel => {
+                with_errors(Some(("/imu/accel", Kind::Imu)), ["/imu/accel/true", "/imu/accel/bias"])
+            }
+            Shape::Mag => {
+                with_errors(Some(("/imu/mag", Kind::MagneticField)), ["/imu/mag/true", "/imu/mag/bias"])
+            }
             Shape::Attitude("estimate") => vec![("/estimate", Kind::Quaternion)],
             Shape::Attitude(_) => vec![("/reference", Kind::Quaternion)],
         }
     }
+}
+
+/// A reading's topic, where it has one to itself, before those of what it would be and of its bias.
+fn with_errors(
+    reading: Option<(&'static str, Kind)>,
+    errors: [&'static str; 2],
+) -> Vec<(&'static str, Kind)> {
+    reading.into_iter().chain(errors.map(|topic| (topic, Kind::Vector))).collect()
 }
 
 /// The shape of each table's rows.
@@ -116,8 +131,8 @@ struct Mcap {
     shapes: Vec<Shape>,
     /// Channels of each table, each with the number of its next message.
     channels: Vec<Vec<(u16, u32)>>,
-    /// The gyroscope's reading that waits.
-    held: [f64; 3],
+    /// The gyroscope's reading that waits, and when it was.
+    held: Option<(SimTime, [f64; 3])>,
     bytes: Vec<u8>,
 }
 
@@ -134,6 +149,39 @@ impl Mcap {
                 channels.push((channel.map_err(failed)?, 0));
             }
             self.channels.push(channels);
+        }
+        Ok(())
+    }
+
+    /// An `Imu` without attitude.
+    fn send_imu(
+        &mut self,
+        table: usize,
+        t: SimTime,
+        rate: Option<[f64; 3]>,
+        force: Option<[f64; 3]>,
+    ) -> Result<(), DatasetError> {
+        imu(Stamped { t, frame: self.frames[1] }, &Imu { attitude: None, rate, force }, &mut self.bytes);
+        self.send(table, 0, t)
+    }
+
+    /// Gives up waiting for the accelerometer, whose sample a fault withholds.
+    fn send_held(&mut self) -> Result<(), DatasetError> {
+        let both = self.shapes.iter().position(|shape| *shape == Shape::Both);
+        match both.zip(self.held.take()) {
+            Some((table, (t, rate))) => self.send_imu(table, t, Some(rate), None),
+            None => Ok(()),
+        }
+    }
+
+    /// What a sensor's reading would be without errors, and its bias: the last two topics of its table.
+    fn send_errors(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError> {
+        let microtesla = self.shapes[table] == Shape::Mag;
+        let topics = self.channels[table].len();
+        for (topic, values) in [(topics - 2, &values[3..6]), (topics - 1, &values[6..9])] {
+            let unit = |i: usize| if microtesla { values[i] * 1e-6 } else { values[i] };
+            vector(Stamped { t, frame: self.frames[1] }, [0, 1, 2].map(unit), &mut self.bytes);
+            self.send(table, topic, t)?;
         }
         Ok(())
     }
@@ -158,8 +206,9 @@ impl Writer for Mcap {
         let bytes = &mut self.bytes;
         match self.shapes[table] {
             Shape::Held => {
-                self.held = first;
-                return Ok(());
+                self.send_held()?;
+                self.held = Some((t, first));
+                return self.send_errors(table, t, values);
             }
             Shape::Truth => {
                 let attitude = std::array::from_fn(|i| values[i]);
@@ -170,19 +219,26 @@ impl Writer for Mcap {
                 return self.send(table, 1, t);
             }
             Shape::Both => {
-                imu(in_body, &Imu { attitude: None, rate: Some(self.held), force: Some(first) }, bytes)
+                let rate = self.held.take_if(|(held, _)| *held == t).map(|(_, rate)| rate);
+                self.send_held()?;
+                self.send_imu(table, t, rate, Some(first))?;
             }
-            Shape::Gyro => imu(in_body, &Imu { attitude: None, rate: Some(first), force: None }, bytes),
-            Shape::Accel => imu(in_body, &Imu { attitude: None, rate: None, force: Some(first) }, bytes),
-            Shape::Mag => magnetic_field(in_body, first, bytes),
+            Shape::Gyro => self.send_imu(table, t, Some(first), None)?,
+            Shape::Accel => self.send_imu(table, t, None, Some(first))?,
+            Shape::Mag => {
+                magnetic_field(in_body, first, bytes);
+                self.send(table, 0, t)?;
+            }
             Shape::Attitude(_) => {
-                quaternion(Stamped { t, frame: nav }, std::array::from_fn(|i| values[i]), bytes)
+                quaternion(Stamped { t, frame: nav }, std::array::from_fn(|i| values[i]), bytes);
+                return self.send(table, 0, t);
             }
         }
-        self.send(table, 0, t)
+        self.send_errors(table, t, values)
     }
 
     fn finish(mut self: Box<Self>, _: &[u64]) -> Result<Vec<Written>, DatasetError> {
+        self.send_held()?;
         self.writer.finish().map_err(failed)?;
         let rows = self.channels.iter().flatten().map(|(_, sent)| u64::from(*sent)).sum();
         self.writer.into_inner().close()?;

@@ -11,6 +11,7 @@ use super::{Options, manifest, reference, write};
 use crate::parallel;
 use crate::scene::{Plan, Runs, SweptValue};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -208,6 +209,7 @@ fn is_same(plan: &Plan, run: &Run, folder: &Path, options: &RunOptions<'_>) -> R
 /// same time and whichever ends last leaves the table of all.
 fn tabulate(scene: &Runs, dir: &Path, options: &RunOptions<'_>) -> Result<(), DatasetError> {
     let failed = DatasetError::io("write", dir);
+    let mut rows = BTreeMap::new();
     loop {
         let indices = complete(dir)?;
         let mut table = csv::Writer::from_writer(Vec::new());
@@ -216,8 +218,10 @@ fn tabulate(scene: &Runs, dir: &Path, options: &RunOptions<'_>) -> Result<(), Da
         let header = header.chain(["samples", "clipped", "reference_rms_deg"]);
         table.write_record(header).map_err(|error| failed(error.into()))?;
         for &index in &indices {
-            let json = manifest::read_json(&folder_of(dir, index)).unwrap_or_default();
-            table.write_record(row(index, &json, &keys)).map_err(|error| failed(error.into()))?;
+            let read = || row(index, &manifest::read_json(&folder_of(dir, index)).unwrap_or_default(), &keys);
+            table
+                .write_record(rows.entry(index).or_insert_with(read))
+                .map_err(|error| failed(error.into()))?;
         }
         let bytes = table.into_inner().map_err(|error| failed(error.into_error()))?;
         let Shard { index, of } = options.shard;

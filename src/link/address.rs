@@ -80,6 +80,11 @@ impl Address {
         self
     }
 
+    /// Whether it carries a stream of bytes as they are written, and not datagrams or gathered blocks.
+    pub fn is_stream(&self) -> bool {
+        matches!(self, Self::Pty { .. } | Self::Serial { .. } | Self::TcpIn(_) | Self::TcpOut(_))
+    }
+
     /// Whether it is standard output.
     pub fn is_stdout(&self) -> bool {
         *self == Self::Stdout

@@ -78,6 +78,47 @@ impl Sender {
         Sent::Done
     }
 
+    /// Sends a packet like [`send`](Self::send), of which no more than the first `count` bytes go out now; the rest is
+    /// kept until [`send_kept`](Self::send_kept), or until the next packet. A link of datagrams or gathered blocks takes
+    /// all of it.
+    pub fn send_first(&mut self, packet: &[u8], count: usize) -> Sent {
+        if self.carry.gather != Gather::Never || !self.carry.fits(packet.len()) {
+            return self.send(packet);
+        }
+        match self.flush_carry() {
+            Sent::Done => {}
+            other => return other,
+        }
+        match write(&mut *self.to, &packet[..count.min(packet.len())]) {
+            Ok(taken) => {
+                self.carry.keep(&packet[taken..]);
+                Sent::Done
+            }
+            Err(refused) => self.refused(refused),
+        }
+    }
+
+    /// The same, waiting like [`send_all`](Self::send_all).
+    pub fn send_all_first(&mut self, packet: &[u8], count: usize, stop: &AtomicBool) -> Sent {
+        loop {
+            match self.send_first(packet, count) {
+                Sent::Full | Sent::Away if !stop.load(Ordering::Relaxed) => _ = self.wait(),
+                done => return done,
+            }
+        }
+    }
+
+    /// Sends `count` bytes more of what is kept, as far as the link takes them now.
+    pub fn send_kept(&mut self, count: usize) {
+        let kept = self.carry.kept();
+        if !kept.is_empty() {
+            match write(&mut *self.to, &kept[..count.min(kept.len())]) {
+                Ok(taken) => self.carry.forget(taken),
+                Err(refused) => _ = self.refused(refused),
+            }
+        }
+    }
+
     /// Sends what is kept of earlier packets as far as the link takes it now; never waits.
     ///
     /// `Done` when nothing is kept any more, `Full` when something is.
@@ -307,6 +348,26 @@ mod tests {
         assert_eq!(far.take(), b"abcdefgABC");
         assert_eq!(sender.send(b"123"), Sent::Done);
         assert_eq!(far.take(), b"DEFG123");
+    }
+
+    #[test]
+    fn a_packet_goes_out_in_pieces_and_whole_before_the_next() {
+        let (mut link, mut far) = memory(100);
+        let mut sender = link.sender();
+        assert_eq!(sender.send_first(b"abcdefg", 3), Sent::Done);
+        assert_eq!(far.take(), b"abc");
+        sender.send_kept(3);
+        assert_eq!(far.take(), b"def");
+        sender.send_kept(3);
+        sender.send_kept(3);
+        assert_eq!(far.take(), b"g", "and nothing after the end");
+        assert_eq!(sender.send_first(b"abcdefg", 3), Sent::Done);
+        assert_eq!(sender.send(b"123"), Sent::Done);
+        assert_eq!(far.take(), b"abcdefg123");
+        far.stall(true);
+        assert_eq!(sender.send_first(b"abcdefg", 3), Sent::Full, "nothing of it");
+        assert_eq!(sender.send_all_first(b"abcdefg", 3, &AtomicBool::new(true)), Sent::Full);
+        assert_eq!(sender.kept(), 0);
     }
 
     #[test]

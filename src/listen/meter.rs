@@ -119,6 +119,8 @@ impl Meter {
             utilisation: baud.and_then(|baud| Some(10.0 * bytes_per_s? / f64::from(baud))),
             crc_errors: counts.damaged,
             lost_seq: counts.numbered.then_some(counts.lost),
+            duplicates: counts.numbered.then_some(counts.duplicates),
+            out_of_order: counts.numbered.then_some(counts.out_of_order),
             joined_midway: counts.joined_midway,
             foreign: counts.foreign,
         }

@@ -18,6 +18,10 @@ pub struct Stream {
     read: u64,
     together: u64,
     steps_back: u64,
+    /// The newest sample time before the last one, where that was older.
+    overtaken: Option<i64>,
+    /// Samples that came after a newer one: no gap hides them.
+    filled: u64,
     interval: Times,
     sample_interval: Times,
     jitter: Times,
@@ -57,6 +61,8 @@ impl Stream {
             read: 0,
             together: 0,
             steps_back: 0,
+            overtaken: None,
+            filled: 0,
             interval: Times::new(),
             sample_interval: Times::new(),
             jitter: Times::new(),
@@ -98,13 +104,18 @@ impl Stream {
         self.count += 1;
         let Some(t) = t else { return };
         self.timed += 1;
+        let newest = self.samples.last;
         let Some(step) = self.samples.take(t.0) else { return };
         if step <= 0 {
             self.steps_back += 1;
+            self.overtaken = newest.filter(|_| step < 0);
             return;
         }
-        self.sample_interval.record(step);
-        if let Some(arrival) = arrival {
+        // Time goes on from before a step back: that was one sample out of order, and no new beginning.
+        let skipped = self.overtaken.take().filter(|newest| t.0 > *newest);
+        self.filled += u64::from(skipped.is_some());
+        self.sample_interval.record(skipped.map_or(step, |newest| t.0.saturating_sub(newest)));
+        if let Some(arrival) = arrival.filter(|_| skipped.is_none()) {
             self.jitter.record(arrival.saturating_sub(step).saturating_abs());
         }
     }
@@ -113,7 +124,8 @@ impl Stream {
     fn missing(&self) -> Option<u64> {
         let median = self.sample_interval.late()?.p50;
         let hidden = |(gap, count): (f64, u64)| ((gap / median).round() as u64).saturating_sub(1) * count;
-        Some(self.sample_interval.values().into_iter().map(hidden).sum())
+        let hidden: u64 = self.sample_interval.values().into_iter().map(hidden).sum();
+        Some(hidden.saturating_sub(self.filled))
     }
 
     pub(super) fn report(&self) -> HeardSensor {

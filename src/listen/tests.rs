@@ -91,6 +91,18 @@ fn time_that_does_not_go_on_is_counted() {
 }
 
 #[test]
+fn who_is_overtaken_is_out_of_order_and_neither_lost_nor_missing() {
+    let meter = heard([0, 1, 2, 3, 5, 4, 6, 7, 9, 8].into_iter().chain(10..100), |k| k * MS);
+    let (counts, sensor) = (meter.counts(), only(&meter));
+    assert_eq!((counts.lost, counts.out_of_order, counts.duplicates), (0, 2, 0));
+    assert_eq!((sensor.missing, sensor.steps_back, sensor.received), (Some(0), 2, 100));
+    // One overtaken and one that never comes.
+    let meter = heard([0, 1, 3, 2, 4, 6].into_iter().chain(7..100), |k| k * MS);
+    assert_eq!((meter.counts().lost, meter.counts().out_of_order), (1, 1));
+    assert_eq!(only(&meter).missing, Some(1));
+}
+
+#[test]
 fn a_recording_has_the_senders_rate_and_no_other() {
     let mut meter = Meter::new(Protocol::Mpu);
     (0..100).for_each(|k| meter.arrived(&packet(k), None));

@@ -70,6 +70,10 @@ pub struct HeardLink {
     pub crc_errors: u64,
     /// Packets missing by their sequence numbers, modulo 256, damaged ones included; absent in protocols without.
     pub lost_seq: Option<u64>,
+    /// Packets whose number came twice in a row; absent in protocols without.
+    pub duplicates: Option<u64>,
+    /// Packets that later ones overtook, sixteen at most; they are not lost. Absent in protocols without numbers.
+    pub out_of_order: Option<u64>,
     /// 1 if the first bytes were the rest of a packet, which is no damage.
     pub joined_midway: u64,
     /// Packets without a sample, by name.

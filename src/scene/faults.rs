@@ -1,54 +1,183 @@
-//! `[[fault]]`: what a sensor does wrong for a while.
+//! `[[fault]]`: what a sensor does wrong for a while, or what becomes of an output's packets.
 
+use super::document::Value;
+use super::output::{Destination, Output};
 use super::section::Section;
+use crate::keys::{Key, Values};
 use crate::quantity::Sign;
-use crate::sensor::{Fault, FaultKind, SensorKind, SensorPlan};
+use crate::sensor::{self, SensorKind, SensorPlan};
 use crate::time::SimTime;
+use crate::wire;
+use std::fmt;
 
-/// Gives each fault to its sensor; returns them as resolved.
-pub(super) fn faults(top: &Section<'_>, sensors: &mut [SensorPlan]) -> Vec<toml::Value> {
-    let mut resolved = Vec::new();
-    for section in top.tables("fault") {
-        if let Some((kind, fault)) = fault(&section) {
-            match sensors.iter_mut().find(|sensor| sensor.kind == kind) {
-                Some(sensor) => {
-                    if let Err(error) = fault.check(kind, sensor.values.scalar("range")) {
-                        section.mistake(error.key, &error.message);
-                    }
-                    sensor.faults.push(fault);
-                }
-                None => section.mistake("sensor", format!("the scene has no {kind} to have a fault")),
-            }
-        }
-        resolved.push(section.finish().into());
-    }
-    resolved
+/// Whose packets a fault concerns.
+#[derive(Clone, Debug, PartialEq)]
+enum On {
+    /// Every output's.
+    All,
+    /// Those of one, counted from 0.
+    Nth(usize),
+    /// Those that go there.
+    To(Destination),
 }
 
-fn fault(section: &Section<'_>) -> Option<(SensorKind, Fault)> {
-    let (sensors, kinds) = (SensorKind::ALL.map(SensorKind::name), FaultKind::ALL.map(FaultKind::name));
-    for (key, example) in [("sensor", "gyro"), ("kind", "stuck")] {
-        if !section.has(key) {
-            section.lacks(format!("a fault needs its {key}, such as {key} = \"{example}\""));
-            section.allow_everything();
-            return None;
+/// A fault of outputs.
+#[derive(Clone, Debug)]
+pub struct OutputFault {
+    on: On,
+    fault: wire::Fault,
+}
+
+impl OutputFault {
+    /// Whether it concerns the output, the `index`-th of a run.
+    pub fn concerns(&self, index: usize, output: &Output) -> bool {
+        let here = match &self.on {
+            On::All => true,
+            On::Nth(nth) => *nth == index,
+            On::To(to) => *to == output.to,
+        };
+        // A file and a datagram have no pieces.
+        here && (self.fault.kind != wire::FaultKind::Split || output.to.address.is_stream())
+    }
+
+    /// Gives each output its faults; returns those that concern none.
+    pub fn equip<'f>(faults: &'f [OutputFault], outputs: &mut [Output]) -> Vec<&'f OutputFault> {
+        for (i, output) in outputs.iter_mut().enumerate() {
+            let mine = faults.iter().filter(|fault| fault.concerns(i, output));
+            output.faults = mine.map(|fault| fault.fault.clone()).collect();
+        }
+        let idle = |fault: &&OutputFault| !outputs.iter().enumerate().any(|(i, it)| fault.concerns(i, it));
+        faults.iter().filter(idle).collect()
+    }
+}
+
+impl fmt::Display for OutputFault {
+    /// `drop from 2 s to 3 s of output 1`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.on {
+            On::All => write!(f, "{} of every output", self.fault),
+            On::Nth(nth) => write!(f, "{} of output {nth}", self.fault),
+            On::To(to) => write!(f, "{} of output {to}", self.fault),
         }
     }
-    let sensor = section.word("sensor", &sensors, "gyro");
-    let kind = section.word("kind", &kinds, "off");
-    let sensor = SensorKind::ALL.into_iter().find(|known| known.name() == sensor)?;
-    let kind = FaultKind::ALL.into_iter().find(|known| known.name() == kind)?;
+}
+
+/// Every `[[fault]]` as resolved, and those of outputs.
+#[derive(Default)]
+pub(super) struct Faults {
+    pub of_outputs: Vec<OutputFault>,
+    pub resolved: Vec<toml::Value>,
+}
+
+/// Gives each fault to its sensor or its output. A scene without outputs is told at the start where to: its faults may
+/// name any.
+pub(super) fn faults(top: &Section<'_>, sensors: &mut [SensorPlan], outputs: &mut [Output]) -> Faults {
+    let mut all = Faults::default();
+    for section in top.tables("fault") {
+        read(&section, sensors, outputs, &mut all.of_outputs);
+        all.resolved.push(section.finish().into());
+    }
+    OutputFault::equip(&all.of_outputs, outputs);
+    all
+}
+
+fn read(section: &Section<'_>, sensors: &mut [SensorPlan], outputs: &[Output], all: &mut Vec<OutputFault>) {
+    let of_sensors = sensor::FaultKind::ALL.map(sensor::FaultKind::name);
+    let of_outputs = wire::FaultKind::ALL.map(wire::FaultKind::name);
+    if !section.has("kind") {
+        section.lacks("a fault needs its kind, such as kind = \"stuck\"".into());
+        return section.allow_everything();
+    }
+    let kind = section.word("kind", &[&of_sensors[..], &of_outputs].concat(), "off");
+    if let Some(kind) = wire::FaultKind::ALL.into_iter().find(|known| known.name() == kind) {
+        if section.has_quietly("sensor") {
+            let kind = kind.name();
+            section.mistake("sensor", format!("{kind} happens to packets: name an `output` or leave it out"));
+            return section.allow_everything();
+        }
+        all.extend(of_output(section, kind, outputs));
+    } else if let Some(kind) = sensor::FaultKind::ALL.into_iter().find(|known| known.name() == kind) {
+        if section.has_quietly("output") {
+            let (kind, kinds) = (kind.name(), of_outputs.join(", "));
+            section.mistake("output", format!("{kind} is a fault of a sensor; those of outputs are {kinds}"));
+            return section.allow_everything();
+        }
+        of_sensor(section, kind, sensors);
+    }
+}
+
+fn of_sensor(section: &Section<'_>, kind: sensor::FaultKind, sensors: &mut [SensorPlan]) {
+    if !section.has("sensor") {
+        section.lacks("a fault needs its sensor, such as sensor = \"gyro\"".into());
+        return section.allow_everything();
+    }
+    let name = section.word("sensor", &SensorKind::ALL.map(SensorKind::name), "gyro");
+    let Some(sensor) = SensorKind::ALL.into_iter().find(|known| known.name() == name) else { return };
+    let Some(When { start, end, values }) = when(section, &kind.keys(sensor)) else { return };
+    let fault = sensor::Fault { kind, start, end, values };
+    match sensors.iter_mut().find(|plan| plan.kind == sensor) {
+        Some(plan) => {
+            if let Err(error) = fault.check(sensor, plan.values.scalar("range")) {
+                section.mistake(error.key, &error.message);
+            }
+            plan.faults.push(fault);
+        }
+        None => section.mistake("sensor", format!("the scene has no {sensor} to have a fault")),
+    }
+}
+
+fn of_output(section: &Section<'_>, kind: wire::FaultKind, outputs: &[Output]) -> Option<OutputFault> {
+    let on = on(section);
+    let When { start, end, values } = when(section, &kind.keys())?;
+    let fault = OutputFault { on: on?, fault: wire::Fault { kind, start, end, values } };
+    if let Err(error) = fault.fault.check() {
+        section.mistake(error.key, &error.message);
+    }
+    if !outputs.is_empty() && !outputs.iter().enumerate().any(|(i, output)| fault.concerns(i, output)) {
+        let list = outputs.iter().enumerate().map(|(i, output)| format!("{i} \"{}\"", output.to));
+        let list = list.collect::<Vec<_>>().join(", ");
+        let why = if kind == wire::FaultKind::Split { " that goes out in pieces" } else { "" };
+        section.mistake("output", format!("names none of the scene's outputs{why}, which are {list}"));
+    }
+    Some(fault)
+}
+
+/// Every output, unless one is named.
+fn on(section: &Section<'_>) -> Option<On> {
+    match section.entry("output").map(|entry| &entry.node.value) {
+        None => Some(On::All),
+        Some(Value::Integer(_)) => Some(On::Nth(section.whole("output", 0) as usize)),
+        Some(Value::Text(_)) => {
+            let to = section.text("output", None)?.parse();
+            to.map(On::To).map_err(|error: String| section.mistake("output", error)).ok()
+        }
+        Some(other) => {
+            let is = other.what();
+            section
+                .mistake("output", format!("is {is}; write its `to`, or its place in the scene from 0 on"));
+            None
+        }
+    }
+}
+
+/// What every fault has: its times and the values of its kind's keys.
+struct When {
+    start: SimTime,
+    end: SimTime,
+    values: Values,
+}
+
+fn when(section: &Section<'_>, keys: &[Key]) -> Option<When> {
     let start = section.time("start", Some("0 s"), Sign::NonNegative);
     let duration = section.has("duration").then(|| section.time("duration", None, Sign::Positive));
-    let keys = kind.keys(sensor);
-    let values = section.values(&keys, true);
-    if section.unread(&keys, &values) {
+    let values = section.values(keys, true);
+    if section.unread(keys, &values) {
         return None;
     }
     let start = start?;
     let end = match duration {
-        Some(duration) => start + duration?,
+        Some(duration) => SimTime(start.0.saturating_add(duration?.0)),
         None => SimTime::FOREVER,
     };
-    Some((sensor, Fault { kind, start, end, values }))
+    Some(When { start, end, values })
 }

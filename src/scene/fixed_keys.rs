@@ -34,8 +34,13 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("fault", "sensor", "\"gyro\", \"accel\" or \"mag\""),
     (
         "fault",
+        "output",
+        "of a fault of packets: the output's `to`, or its place in the scene from 0 on (default: every output)",
+    ),
+    (
+        "fault",
         "kind",
-        "\"off\", \"stuck\", \"garbage\", \"wrong\", \"slow\", \"delayed\", \"intermittent\", \"spike\", \"step\" or \"ramp\"",
+        "of a sensor \"off\", \"stuck\", \"garbage\", \"wrong\", \"slow\", \"delayed\", \"intermittent\", \"spike\", \"step\" or \"ramp\"; of packets \"drop\", \"corrupt\", \"duplicate\", \"reorder\", \"stall\" or \"split\"",
     ),
     ("fault", "start", "when it begins"),
     ("fault", "duration", "how long it lasts (default: to the end)"),
@@ -44,7 +49,19 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "size",
         "of `spike`, `step`, `ramp`: what is added; of `garbage`: its bound (default the range)",
     ),
-    ("fault", "share", "of `spike` and `intermittent`: how many of the samples"),
+    (
+        "fault",
+        "share",
+        "of `spike` and `intermittent`: how many of the samples; of faults of packets but `stall`: how many of these",
+    ),
+    ("fault", "bits", "of `corrupt`: how many are flipped in a packet (default 1)"),
+    (
+        "fault",
+        "hurts",
+        "of `corrupt`: \"packet\" (default), its inside, or \"framing\" too, which may cost a neighbour",
+    ),
+    ("fault", "pieces", "of `split`: in how many a packet goes out (default 2)"),
+    ("fault", "gap", "of `split`: the time from piece to piece (default \"1 ms\")"),
     ("fault", "every", "of `slow`: one sample in so many (default 10)"),
     ("fault", "delay", "of `delayed`: how old a reading is"),
     (

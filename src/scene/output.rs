@@ -108,13 +108,15 @@ pub struct Output {
     pub overload: Overload,
     /// Whether to start although the baud rate does not carry the packets.
     pub force: bool,
+    /// What becomes of its packets on their way.
+    pub faults: Vec<wire::Fault>,
 }
 
 impl Output {
     /// An output of the command line: nothing but its destination.
     pub fn to(to: Destination) -> Output {
         let wire = wire::Options { layout: None, controller: to.target.map(|target| target.controller) };
-        Output { to, wire, overload: Overload::default(), force: false }
+        Output { to, wire, overload: Overload::default(), force: false, faults: Vec::new() }
     }
 }
 
@@ -159,7 +161,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
         Some(false) => to.address = to.address.unpaced(),
         None => {}
     }
-    Some(Output { to, wire, overload, force })
+    Some(Output { to, wire, overload, force, faults: Vec::new() })
 }
 
 /// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.

@@ -27,6 +27,7 @@ impl Plan {
             sensors: self.sensors.iter().map(faultless).collect(),
             reference: None,
             outputs: Vec::new(),
+            output_faults: Vec::new(),
             drawn: self.drawn.clone(),
             attached: Vec::new(),
             warnings: Vec::new(),

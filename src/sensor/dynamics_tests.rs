@@ -218,6 +218,31 @@ fn a_random_vibration_has_the_variance_of_its_density_over_its_band() {
             assert!(spread(&values, (variance * 2.0).sqrt()).is_err(), "a two-sided density is another");
         }
     }
+    // The same as a table of two points; and one that rises by 12 dB, falls again as 1/f, and leaves an axis out.
+    let points = |points: &[(u32, &str)]| {
+        let point = |(hz, density): &(u32, &str)| {
+            format!("{{ frequency = \"{hz} Hz\", density = \"{density} m^2/s^4/Hz\" }}")
+        };
+        let points: Vec<_> = points.iter().map(point).collect();
+        format!("vibration = {{ spectrum = [{}] }}", points.join(", "))
+    };
+    let flat = points(&[(20, "[0.01, 0.02, 0.01]"), (220, "[0.01, 0.02, 0.01]")]);
+    assert_eq!(
+        read(&mut sensor("[accel]", "1 kHz", &flat, 1), [0.0; 3], 100).reading,
+        read(&mut sensor("[accel]", "1 kHz", keys, 1), [0.0; 3], 100).reading
+    );
+    let shaped = points(&[(10, "[1, 0, 4]"), (40, "[16, 0, 4]"), (160, "[4, 0, 1]")]);
+    // x: S = (f/10)² up to 40 Hz: (40³ − 10³)/300 = 210; then 16·40/f: 640·ln 4. z: 4·30, then a quarter of 640·ln 4.
+    let tail = 640.0 * 4f64.ln();
+    let runs: Vec<_> = (0..600)
+        .map(|seed| read(&mut sensor("[accel]", "1 kHz", &shaped, seed), [0.0; 3], 78).reading)
+        .collect();
+    for (axis, variance) in [(0, 210.0 + tail), (2, 120.0 + tail / 4.0)] {
+        let values: Vec<_> = runs.iter().map(|run| run[axis][77]).collect();
+        spread(&values, variance.sqrt()).unwrap_or_else(|why| panic!("axis {axis}: {why}"));
+        assert!(spread(&values, (variance * 1.5).sqrt()).is_err(), "control");
+    }
+    assert!(runs.iter().all(|run| run[1].iter().all(|y| *y == 0.0)));
     // Nothing outside the band: 10 s of it correlate with no sine beyond, and with some inside.
     let long = &read(&mut sensor("[accel]", "1 kHz", keys, 1), [0.0; 3], 10_000).reading[0];
     let power = |f: f64| {
@@ -238,6 +263,20 @@ fn a_random_vibration_has_the_variance_of_its_density_over_its_band() {
         ("{ frequency = \"9 Hz\" }", "`amplitude`"),
         ("{ density = \"1 m^2/s^4/Hz\", from = \"9 Hz\", to = \"8 Hz\" }", "`from` below `to`"),
         ("[\"9 Hz\"]", "is a string; write"),
+        ("{ spectrum = [{ frequency = \"9 Hz\", density = \"1 m^2/s^4/Hz\" }] }", "two points"),
+        ("{ spectrum = [{ frequency = \"9 Hz\" }, { frequency = \"10 Hz\" }] }", "and its `density`"),
+        (
+            "{ spectrum = [{ frequency = \"9 Hz\", density = \"1 m^2/s^4/Hz\" }, { frequency = \"8 Hz\", density = \"1 m^2/s^4/Hz\" }] }",
+            "8 Hz follows 9 Hz",
+        ),
+        (
+            "{ spectrum = [{ frequency = \"9 Hz\", density = \"1 m^2/s^4/Hz\" }, { frequency = \"10 Hz\", density = \"0 m^2/s^4/Hz\" }] }",
+            "everywhere or nowhere",
+        ),
+        (
+            "{ density = \"1 m^2/s^4/Hz\", frequency = \"8 Hz\", from = \"1 Hz\", to = \"2 Hz\" }",
+            "an entry has",
+        ),
     ] {
         let text = format!("duration = \"1 s\"\n[accel]\nrate = \"1 Hz\"\nvibration = {bad}");
         let error = Plan::parse(&text, "s", "s", &[]).unwrap_err().to_string();

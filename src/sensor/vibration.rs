@@ -1,9 +1,10 @@
 //! Vibration: sines that are felt beside the motion, and random vibration by its power spectral density.
 //!
 //! A sine is `A·sin(2πft + p)` at the sensor's ticks, so one above half the rate folds over, as in a part. A density S
-//! over [from, to] is 32 sines, one of random frequency and phase from each slice Δf of the band, with A = √(2·S·Δf)
-//! (Rice 1944; Shinozuka & Jan 1972): nearly normal, of variance S·(to − from), and nothing outside the band. A filter
-//! of the sensor, and the mean of `sampling = "average"`, act on each sine as in continuous time: before it folds over.
+//! over [from, to] is 32 sines, one of random frequency and phase from each slice Δf of the band, with A = √(2·∫S df)
+//! (Rice 1944; Shinozuka & Jan 1972): nearly normal, of variance S·(to − from), and nothing outside the band. A table
+//! of densities at frequencies is such a band from each point to the next, S being straight between them in logarithms
+//! of both, as test standards draw profiles (MIL-STD-810H, method 514.8): S = S₁·(f/f₁)ᵇ. A filter of the sensor, and the mean of `sampling = "average"`, act on each sine as in continuous time: before it folds over.
 
 use super::filter::LowPass;
 use super::strides::{STRIDE, strides};
@@ -17,10 +18,23 @@ use std::f64::consts::{PI, TAU};
 
 /// Sines that a band is made of.
 const LINES: usize = 32;
+const PROFILE: &str = "[{ frequency = \"20 Hz\", density = \"0.001 g^2/Hz\" }, { frequency = \"200 Hz\", density = \"0.01 g^2/Hz\" }]";
 const EXAMPLE: &str = "[{ frequency = \"120 Hz\", amplitude = \"[0.2, 0.2, 1] m/s^2\" }]";
 
-const fn keys(reading: Kind, spectrum: Kind) -> [Key; 6] {
-    const HERTZ: Takes = Takes::Scalar(Kind::FREQUENCY.signed(Sign::NonNegative));
+const HERTZ: Takes = Takes::Scalar(Kind::FREQUENCY.signed(Sign::NonNegative));
+
+/// A point of a spectrum.
+const fn point(spectrum: Kind) -> [Key; 2] {
+    [
+        Key { name: "frequency", takes: HERTZ, default: None, about: "of the point" },
+        Key { name: "density", takes: Takes::PerAxis(spectrum), default: None, about: "there, one-sided" },
+    ]
+}
+
+static GYRO_POINT: [Key; 2] = point(Kind::GYRO_SPECTRUM);
+static ACCEL_POINT: [Key; 2] = point(Kind::ACCEL_SPECTRUM);
+
+const fn keys(reading: Kind, spectrum: Kind, point: &'static [Key]) -> [Key; 7] {
     [
         Key { name: "frequency", takes: HERTZ, default: None, about: "of a sine" },
         Key { name: "amplitude", takes: Takes::BodyVector(reading), default: None, about: "of the sine" },
@@ -38,11 +52,17 @@ const fn keys(reading: Kind, spectrum: Kind) -> [Key; 6] {
         },
         Key { name: "from", takes: HERTZ, default: None, about: "where its band begins" },
         Key { name: "to", takes: HERTZ, default: None, about: "where its band ends" },
+        Key {
+            name: "spectrum",
+            takes: Takes::Table(Nested { keys: point, alone: None, many: true, example: PROFILE }),
+            default: None,
+            about: "of random vibration, as points",
+        },
     ]
 }
 
-static GYRO: [Key; 6] = keys(Kind::ANGULAR_RATE, Kind::GYRO_SPECTRUM);
-static ACCEL: [Key; 6] = keys(Kind::ACCELERATION, Kind::ACCEL_SPECTRUM);
+static GYRO: [Key; 7] = keys(Kind::ANGULAR_RATE, Kind::GYRO_SPECTRUM, &GYRO_POINT);
+static ACCEL: [Key; 7] = keys(Kind::ACCELERATION, Kind::ACCEL_SPECTRUM, &ACCEL_POINT);
 
 pub(super) static KIND: TermKind = TermKind {
     name: "vibration",
@@ -59,20 +79,27 @@ pub(super) static KIND: TermKind = TermKind {
             name: "vibration",
             takes: Takes::Table(Nested { keys, alone: None, many: true, example: EXAMPLE }),
             default: None,
-            about: "each a sine (`frequency`, `amplitude`, `phase`), or random (`density` over `from` to `to`)",
+            about: "each a sine (`frequency`, `amplitude`, `phase`), or random (`density` over `from` to `to`, or `spectrum`, points of it)",
         }]
     },
     build: |values, context| {
         let mut sines = Vec::new();
         for (i, given) in values.tables("vibration").iter().enumerate() {
-            match (given.scalar("frequency"), given.vector("amplitude"), given.vector("density")) {
-                (Some(hz), Some(amplitude), None) => {
+            let sine = given.scalar("frequency").zip(given.vector("amplitude"));
+            let has = |keys: &[&str]| keys.iter().any(|key| given.has(key));
+            match (sine, given.vector("density"), given.tables("spectrum")) {
+                (Some((hz, amplitude)), None, []) if !has(&["from", "to"]) => {
                     sines.push(Sine { hz, amplitude, phase: given.vector("phase").unwrap_or_default() });
                 }
-                (None, None, Some(density)) => sines.extend(random(given, density, i, context)?),
+                (None, Some(density), []) if !has(&["frequency", "amplitude"]) => {
+                    sines.extend(random(&band(given, density)?, i, context));
+                }
+                (None, None, points @ [_, ..]) if !has(&["frequency", "amplitude", "from", "to"]) => {
+                    sines.extend(random(&profile(points)?, i, context));
+                }
                 _ => {
                     let message = format!(
-                        "an entry has a `frequency` and an `amplitude`, or a `density` with `from` and `to`: {EXAMPLE}"
+                        "an entry has a `frequency` and an `amplitude`, or a `density` with `from` and `to`, or a `spectrum`: {EXAMPLE}"
                     );
                     return Err(KeyError::new("vibration", message));
                 }
@@ -93,8 +120,11 @@ struct Sine {
     phase: DVec3,
 }
 
-/// A band of constant density as sines.
-fn random(given: &Values, density: DVec3, i: usize, context: &Context) -> Result<Vec<Sine>, KeyError> {
+/// A frequency, Hz, and the density there.
+type Point = (f64, DVec3);
+
+/// A band of constant density.
+fn band(given: &Values, density: DVec3) -> Result<[Point; 2], KeyError> {
     let band = given.scalar("from").zip(given.scalar("to")).filter(|(from, to)| from < to);
     let Some((from, to)) = band else {
         return Err(KeyError::new(
@@ -102,16 +132,68 @@ fn random(given: &Values, density: DVec3, i: usize, context: &Context) -> Result
             "a `density` needs its band, `from` below `to`, such as from = \"20 Hz\", to = \"200 Hz\"",
         ));
     };
+    Ok([(from, density), (to, density)])
+}
+
+/// The points of a table, refused where no line in logarithms goes through them.
+fn profile(points: &[Values]) -> Result<Vec<Point>, KeyError> {
+    let wrong = |message: String| Err(KeyError::new("vibration", format!("{message}: spectrum = {PROFILE}")));
+    let point = |values: &Values| values.scalar("frequency").zip(values.vector("density"));
+    let Some(points) = points.iter().map(point).collect::<Option<Vec<Point>>>() else {
+        return wrong("each point of a `spectrum` has its `frequency` and its `density`".into());
+    };
+    if points.len() < 2 {
+        return wrong("a `spectrum` has two points at least".into());
+    }
+    for pair in points.windows(2) {
+        let [(from, low), (to, high)] = [pair[0], pair[1]];
+        if from <= 0.0 || from >= to {
+            return wrong(format!(
+                "the frequencies of a `spectrum` rise from above 0, but {to} Hz follows {from} Hz"
+            ));
+        }
+        if (0..3).any(|axis| (low[axis] == 0.0) != (high[axis] == 0.0)) {
+            return wrong(format!(
+                "a `spectrum` is 0 on an axis everywhere or nowhere, but not so from {from} to {to} Hz"
+            ));
+        }
+    }
+    Ok(points)
+}
+
+/// Random vibration as sines, [`LINES`] from each point to the next.
+fn random(points: &[Point], i: usize, context: &Context) -> Vec<Sine> {
     let mut streams = context.streams(&format!("vibration/{i}"));
-    let slice = (to - from) / LINES as f64;
-    let amplitude = DVec3::from_array((2.0 * slice * density).to_array().map(libm::sqrt));
-    Ok((0..LINES)
-        .map(|line| {
+    let mut sines = Vec::with_capacity(LINES * points.len());
+    for pair in points.windows(2) {
+        let ((from, low), (to, high)) = (pair[0], pair[1]);
+        let slice = (to - from) / LINES as f64;
+        sines.extend((0..LINES).map(|line| {
+            let begin = from + slice * line as f64;
+            let power = |axis: usize| power((from, low[axis]), (to, high[axis]), begin, slice);
+            let amplitude = DVec3::from_array([0, 1, 2].map(|axis| libm::sqrt(2.0 * power(axis))));
             let hz = from + slice * (line as f64 + streams[0].random::<f64>());
             let phase = DVec3::from_array(streams.each_mut().map(|stream| TAU * stream.random::<f64>()));
             Sine { hz, amplitude, phase }
-        })
-        .collect())
+        }));
+    }
+    sines
+}
+
+/// ∫ S₁·(f/f₁)ᵇ df over a slice that begins at `begin`, the line going from one point to another.
+fn power((from, low): (f64, f64), (to, high): (f64, f64), begin: f64, slice: f64) -> f64 {
+    if low == high {
+        return slice * low;
+    }
+    let b = libm::log(high / low) / libm::log(to / from);
+    let (x, y) = (begin / from, (begin + slice) / from);
+    // The antiderivative's limit at b = −1 is a logarithm, whose neighbourhood loses digits.
+    let area = if (b + 1.0).abs() < 1e-9 {
+        libm::log(y / x)
+    } else {
+        libm::pow(x, b + 1.0) * libm::expm1((b + 1.0) * libm::log(y / x)) / (b + 1.0)
+    };
+    low * from * area
 }
 
 /// A sine as the sensor feels it.

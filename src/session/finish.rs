@@ -1,7 +1,7 @@
 //! The end of a run: everything joined, taken leave of, closed and added up.
 
 use super::control::{Ended, Run};
-use super::links::Account;
+use super::links::{self, Account};
 use super::pacer::{Left, Pacer};
 use super::producer::{Encoders, Made};
 use super::tally::{self, LinkTally};
@@ -48,7 +48,7 @@ impl Run {
 
     /// Lets the other side take what was sent, closes everything, and adds up.
     pub(super) async fn finish(mut self, ended: Ended) -> Result<Outcome, SessionError> {
-        let Ended { mut pacer, links, program, names, granted, made: (made, left, encoders) } = ended;
+        let Ended { mut pacer, links, program, names, granted, made: (mut made, left, encoders) } = ended;
         self.take_leave(&mut pacer, encoders).await;
         for (sender, gone) in pacer.senders.iter_mut().zip(&mut pacer.gone) {
             if let Err(error) = sender.finish() {
@@ -92,9 +92,11 @@ impl Run {
         let (total, waiting) = (sum(&made.samples), sum(&made.waiting));
         let queued = std::array::from_fn(|i| left.samples[i] + waiting[i]);
         let paced = self.job.speed != Speed::Max;
+        let played = self.played(&gone);
+        made.faults.iter_mut().flatten().for_each(|acts| acts.settle(played + self.rest()));
         let heard = &self.talk.borrow().heard;
         Ok(Outcome {
-            played: self.played(&gone),
+            played,
             interrupted: self.interrupted,
             rest_s: self.rest().seconds(),
             stretched_s: stretched as f64 * 1e-9,
@@ -104,6 +106,7 @@ impl Run {
             watched: pacer.watching.map(|watching| watching.seen),
             sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
             links: self.link_reports(&tallies, &gone, names, &made, &left),
+            faults: links::fired(&self.job.outputs, &made),
             score: heard.score(&self.job.estimator),
             estimates: heard.estimates.clone(),
             command,
@@ -178,6 +181,7 @@ impl Run {
             watched: None,
             sensors: tally::sensors(&self.job.plan, &tallies, ByKind::default(), ByKind::default(), false),
             links: self.link_reports(&tallies, &gone, names, &Made::default(), &Left::nothing(gone.len())),
+            faults: Vec::new(),
             score: None,
             estimates: Vec::new(),
             command: self.ended,

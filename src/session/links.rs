@@ -6,6 +6,8 @@ use super::tally::LinkTally;
 use crate::link::{Address, Link, bytes_per_second};
 use crate::report::{Gaps, LinkReport};
 use crate::scene::Output;
+use crate::wire::Acts;
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::time::Duration;
 
@@ -89,6 +91,7 @@ impl Account<'_> {
                 samples: gaps.samples,
             }),
             replies: tally.replies + self.replies[i],
+            faults: by_kind(output, self.made.faults.get(i).map_or(&[], Vec::as_slice)),
             crc_errors: self.damaged[i],
             lost_seq: None,
             broken: self.broken(i),
@@ -103,4 +106,19 @@ impl Account<'_> {
             gone => gone.map(|kind| kind.to_string()),
         }
     }
+}
+
+/// The packets that each kind of an output's faults acted on.
+fn by_kind(output: &Output, acts: &[Acts]) -> BTreeMap<&'static str, u64> {
+    let mut all: BTreeMap<_, _> = output.faults.iter().map(|fault| (fault.kind.name(), 0)).collect();
+    acts.iter().for_each(|acts| *all.entry(acts.kind.name()).or_default() += acts.packets);
+    all
+}
+
+/// The faults of outputs that acted: `mpu@pty drop from 2 s to 3 s`.
+pub(super) fn fired(outputs: &[Output], made: &Made) -> Vec<String> {
+    let acted = outputs.iter().zip(&made.faults).flat_map(|(output, acts)| {
+        acts.iter().filter(|acts| acts.packets > 0).map(|acts| format!("{} {}", output.to, acts.what))
+    });
+    acted.collect()
 }

@@ -74,6 +74,9 @@ impl Left {
     }
 
     fn add(&mut self, output: usize, packet: &Packet) {
+        if packet.is_nothing() {
+            return;
+        }
         self.packets[output] += 1;
         for (i, samples) in self.samples.iter_mut().enumerate() {
             *samples += u64::from(packet.carries >> i & 1) + u64::from(packet.replaced[i]);
@@ -169,7 +172,11 @@ impl<C: Clock> Pacer<C> {
             if due != i64::MIN {
                 self.clock.wait_until(due);
             }
-            self.deliver(output, Due { packet, due }, shared);
+            if packet.is_nothing() {
+                self.senders[output].send_kept(packet.piece.into());
+            } else {
+                self.deliver(output, Due { packet, due }, shared);
+            }
             shared.stream_ns.store(packet.due.0, Ordering::Relaxed);
         }
     }
@@ -198,9 +205,12 @@ impl<C: Clock> Pacer<C> {
         let Due { packet, due } = it;
         let taken = self.steps[output].as_ref().map_or(0, Step::taken);
         let before = self.clock.now();
-        let sent = match self.speed {
-            Speed::Max => self.senders[output].send_all(packet.bytes(), &shared.stop),
-            Speed::Times(_) => self.senders[output].send(packet.bytes()),
+        let (sender, bytes) = (&mut self.senders[output], packet.bytes());
+        let sent = match (self.speed, usize::from(packet.piece)) {
+            (Speed::Max, 0) => sender.send_all(bytes, &shared.stop),
+            (Speed::Max, piece) => sender.send_all_first(bytes, piece, &shared.stop),
+            (Speed::Times(_), 0) => sender.send(bytes),
+            (Speed::Times(_), piece) => sender.send_first(bytes, piece),
         };
         let tally = &mut self.tallies[output];
         match sent {

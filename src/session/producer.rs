@@ -6,7 +6,7 @@ use crate::player::{BLOCK, Moment, Player};
 use crate::scene::{Output, Plan};
 use crate::sensor::ByKind;
 use crate::time::SimTime;
-use crate::wire::{self, Encoder, Now, Packet, Setup, dialogue::Peer};
+use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Setup, dialogue::Peer};
 use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -40,6 +40,8 @@ pub(super) struct Made {
     pub samples: Vec<ByKind<u64>>,
     pub waiting: Vec<ByKind<u64>>,
     pub packets: Vec<u64>,
+    /// What faults have done, of each output.
+    pub faults: Vec<Vec<Acts>>,
 }
 
 /// Each output's encoder, once nothing more is made: it knows how to take leave.
@@ -60,31 +62,49 @@ pub(super) fn produce(task: Task<'_>, ring: Producer<Item>, shared: &Shared) -> 
     };
     let encoders: Encoders =
         outputs.iter().enumerate().map(|(i, output)| wire::encoder(output.to.protocol, &setup(i))).collect();
+    let faults = outputs
+        .iter()
+        .enumerate()
+        .map(|(i, output)| Faults::new(&output.faults, output.to.protocol, plan.seed, i));
     let mut maker = Maker {
         samples: vec![ByKind::default(); outputs.len()],
         encoders,
+        faults: faults.collect(),
         made: vec![0; outputs.len()],
         packets: Vec::new(),
         items: Vec::new(),
         start: SimTime::ZERO,
+        resting: rest.is_some(),
         ring,
         shared,
     };
     // Stopping early is no failure: what was made is counted either way.
     let _ = maker.play(plan, end, rest);
+    maker.end();
     shared.all_made.store(true, Ordering::Release);
     let waiting = maker.encoders.iter().map(|encoder| encoder.waiting()).collect();
-    (Made { samples: maker.samples, waiting, packets: maker.made }, maker.encoders)
+    let samples = maker.samples.iter().zip(&maker.faults);
+    let samples = samples.map(|(made, faults)| faults.as_ref().map_or(*made, |faults| faults.account(*made)));
+    let made = Made {
+        samples: samples.collect(),
+        waiting,
+        packets: maker.made,
+        faults: maker.faults.into_iter().map(|faults| faults.map_or(Vec::new(), Faults::into_acts)).collect(),
+    };
+    (made, maker.encoders)
 }
 
 struct Maker<'a> {
     encoders: Encoders,
+    faults: Vec<Option<Faults>>,
     samples: Vec<ByKind<u64>>,
     made: Vec<u64>,
     packets: Vec<Packet>,
     items: Vec<Item>,
     /// Stream time at which what is played began.
     start: SimTime,
+    /// Whether the vehicle is held still before the scene.
+    resting: bool,
     ring: Producer<Item>,
     shared: &'a Shared,
 }
@@ -94,6 +114,8 @@ impl Maker<'_> {
         if let Some(rest) = rest {
             self.start = self.hold_still(plan, rest)?;
             self.shared.scene_starts_ns.store(self.start.0, Ordering::Release);
+            self.faults.iter_mut().flatten().for_each(|faults| faults.scene_starts(self.start));
+            self.resting = false;
         }
         Player::new(plan, end, BLOCK).play(|moment| self.make(moment))
     }
@@ -143,21 +165,47 @@ impl Maker<'_> {
         let t = self.start + t;
         let truth = &Truth { t, ..*truth };
         self.items.clear();
-        for (output, encoder) in self.encoders.iter_mut().enumerate() {
+        for output in 0..self.encoders.len() {
             for reading in readings {
                 self.samples[output][reading.kind as usize] += 1;
             }
             self.packets.clear();
-            encoder.encode(&Now { t, truth, readings }, &mut self.packets);
-            self.made[output] += self.packets.len() as u64;
-            self.items.extend(self.packets.iter().map(|&packet| Item { output, packet }));
+            self.encoders[output].encode(&Now { t, truth, readings }, &mut self.packets);
+            // What goes wrong goes wrong in the scene.
+            if let Some(faults) = self.faults[output].as_mut().filter(|_| !self.resting) {
+                faults.pass(t, &mut self.packets);
+                faults.settle(SimTime(self.shared.stream_ns.load(Ordering::Relaxed)));
+            }
+            self.count(output);
         }
-        if self.encoders.len() > 1 {
+        self.hand_over();
+        Ok(())
+    }
+
+    /// What faults still hold goes out.
+    fn end(&mut self) {
+        self.items.clear();
+        for output in 0..self.faults.len() {
+            self.packets.clear();
+            if let Some(faults) = &mut self.faults[output] {
+                faults.end(&mut self.packets);
+            }
+            self.count(output);
+        }
+        self.hand_over();
+    }
+
+    fn count(&mut self, output: usize) {
+        self.made[output] += self.packets.iter().filter(|packet| !packet.is_nothing()).count() as u64;
+        self.items.extend(self.packets.iter().map(|&packet| Item { output, packet }));
+    }
+
+    fn hand_over(&mut self) {
+        if self.encoders.len() > 1 || self.faults.iter().any(Option::is_some) {
             // A packet due between two ticks of one output must not wait behind a later one of another.
             self.items.sort_by_key(|item| item.packet.due);
         }
         self.items.iter().for_each(|item| push(&mut self.ring, *item, self.shared));
-        Ok(())
     }
 }
 

@@ -11,6 +11,7 @@ use super::Protocol;
 use crate::geometry::{Axes, Body, Vector};
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
+use ratetable_protocols::Losses;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -94,9 +95,12 @@ pub struct Counts {
     /// 1 if the stream began in the middle of a packet, which is no damage.
     pub joined_midway: u64,
     /// Packets missing by the sequence number, damaged ones included: the number counts modulo 256 for each sender,
-    /// so a longer gap counts what is left of it after whole turns, and a packet out of order counts as 254. 0 for text,
-    /// which has no number.
+    /// so a longer gap counts what is left of it after whole turns. 0 for text, which has no number.
     pub lost: u64,
+    /// Packets whose number came twice in a row.
+    pub duplicates: u64,
+    /// Packets that one with a later number overtook, sixteen places at most; they are not lost.
+    pub out_of_order: u64,
     /// Whether packets have a sequence number at all.
     pub numbered: bool,
     /// Packets that carry no sample, by name.
@@ -110,6 +114,15 @@ impl Counts {
     fn refuse(&mut self) {
         let first = self.packets == 0 && self.damaged == 0 && self.joined_midway == 0;
         *if first { &mut self.joined_midway } else { &mut self.damaged } += 1;
+    }
+
+    /// Takes in the number of a packet by the sender that `losses` keeps account of.
+    fn number(&mut self, losses: &mut Losses, seq: u8) {
+        let before = *losses;
+        losses.observe(seq);
+        self.duplicates += losses.duplicates() - before.duplicates();
+        self.out_of_order += losses.out_of_order() - before.out_of_order();
+        self.lost = self.lost + losses.lost() - before.lost();
     }
 
     fn foreign(&mut self, name: &str) {

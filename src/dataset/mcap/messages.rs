@@ -11,6 +11,7 @@ pub(super) enum Kind {
     Imu,
     MagneticField,
     Quaternion,
+    Vector,
 }
 
 /// Before the definition of each message that another one holds.
@@ -74,6 +75,15 @@ impl Kind {
                     "geometry_msgs/Vector3": three!()
                 ),
             ),
+            Kind::Vector => (
+                "geometry_msgs/msg/Vector3Stamped",
+                with!(
+                    "std_msgs/Header header\ngeometry_msgs/Vector3 vector\n",
+                    "std_msgs/Header": header!(),
+                    "builtin_interfaces/Time": time!(),
+                    "geometry_msgs/Vector3": three!()
+                ),
+            ),
             Kind::Quaternion => (
                 "geometry_msgs/msg/QuaternionStamped",
                 with!(
@@ -123,6 +133,11 @@ pub(super) fn magnetic_field(stamped: Stamped, field: [f64; 3], bytes: &mut Vec<
 /// `geometry_msgs/msg/QuaternionStamped` of `[w, x, y, z]`.
 pub(super) fn quaternion(stamped: Stamped, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
     Cdr::begin(stamped, bytes).doubles(&[x, y, z, w]);
+}
+
+/// `geometry_msgs/msg/Vector3Stamped`.
+pub(super) fn vector(stamped: Stamped, vector: [f64; 3], bytes: &mut Vec<u8>) {
+    Cdr::begin(stamped, bytes).doubles(&vector);
 }
 
 /// A message being written.

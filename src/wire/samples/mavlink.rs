@@ -60,7 +60,7 @@ impl Senders {
         let Ok(Received { header, id, message }) = received else { return counts.refuse() };
         counts.packets += 1;
         let sender = [header.system, header.component];
-        counts.lost += u64::from(self.0.entry(sender).or_default().observe(header.seq));
+        counts.number(self.0.entry(sender).or_default(), header.seq);
         let name = message.map(|message| message.name());
         match message.and_then(|message| Inertial::of(&message, sender)) {
             Some(inertial) if inertial.is_fresh() => inertial.hand_on(each),

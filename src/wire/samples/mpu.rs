@@ -28,7 +28,7 @@ impl Reader {
         decoder.feed(bytes, |received| {
             let Ok(Received { seq, t_us, packet }) = received else { return counts.refuse() };
             counts.packets += 1;
-            counts.lost += u64::from(losses.observe(seq));
+            counts.number(losses, seq);
             if let Packet::Attitude(_) = packet {
                 // Its time is an echo of the other direction's.
                 return counts.foreign("attitude");

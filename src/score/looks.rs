@@ -1,0 +1,77 @@
+//! The usual mistakes of axes, order and sign: each undone on an estimate that is far off, to see whether it is one.
+
+use crate::geometry::{Attitude, Axes, Euler, exp};
+use glam::{DQuat, DVec3};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// An estimate further off than this may be looked through for a mistake, rad: 10 deg RMS.
+pub(super) const BAD: f64 = 10.0 * PI / 180.0;
+/// A mistake is named if undoing it leaves less than this share of the error, and less than [`BAD`].
+pub(super) const SHARE: f64 = 0.2;
+/// Mistakes that explain it this much worse than the best, and this much (rad), do so as well.
+pub(super) const ALIKE: (f64, f64) = (1.5, 0.1 * PI / 180.0);
+
+/// One mistake, and what it does undone.
+pub(super) struct Mistake {
+    /// After "estimate looks".
+    pub name: &'static str,
+    pub undo: fn(DQuat) -> DQuat,
+}
+
+/// In the order in which they are named where a motion does not tell them apart.
+pub(super) const MISTAKES: [Mistake; 17] = [
+    Mistake { name: "NED/ENU swapped", undo: |q| Axes::EnuFlu.attitude_in(q).q },
+    Mistake { name: "FRD/FLU swapped (body axes alone)", undo: |q| q * turn(DVec3::X, PI) },
+    Mistake {
+        name: "NED/ENU swapped (nav axes alone)",
+        undo: |q| Axes::EnuFlu.attitude_in(q).q * turn(DVec3::X, PI),
+    },
+    Mistake {
+        name: "north-west-up, forward-left-up instead of NED-FRD",
+        undo: |q| turn(DVec3::X, PI) * q * turn(DVec3::X, PI),
+    },
+    Mistake { name: "conjugated (nav to body instead of body to nav)", undo: |q| q.conjugate() },
+    Mistake { name: "w last, read as w first", undo: |q| DQuat::from_xyzw(q.w, q.x, q.y, q.z) },
+    Mistake { name: "w first, read as w last", undo: |q| DQuat::from_xyzw(q.y, q.z, q.w, q.x) },
+    Mistake { name: "yaw sign flipped", undo: |q| euler(q, |a| Euler { yaw: -a.yaw, ..a }) },
+    Mistake { name: "pitch sign flipped", undo: |q| euler(q, |a| Euler { pitch: -a.pitch, ..a }) },
+    Mistake { name: "roll sign flipped", undo: |q| euler(q, |a| Euler { roll: -a.roll, ..a }) },
+    Mistake {
+        name: "roll and pitch swapped",
+        undo: |q| euler(q, |a| Euler { roll: a.pitch, pitch: a.roll, ..a }),
+    },
+    Mistake {
+        name: "with yaw counted anticlockwise from east",
+        undo: |q| euler(q, |a| Euler { yaw: FRAC_PI_2 - a.yaw, ..a }),
+    },
+    Mistake { name: "in radians read as degrees", undo: |q| euler(q, to_degrees) },
+    Mistake { name: "turned by 90 deg about the vertical", undo: |q| turn(DVec3::Z, -FRAC_PI_2) * q },
+    Mistake { name: "turned by -90 deg about the vertical", undo: |q| turn(DVec3::Z, FRAC_PI_2) * q },
+    Mistake { name: "turned by 180 deg about the vertical", undo: |q| turn(DVec3::Z, PI) * q },
+    Mistake { name: "turned by 180 deg about body z", undo: |q| q * turn(DVec3::Z, PI) },
+];
+
+fn turn(axis: DVec3, angle: f64) -> DQuat {
+    exp(axis * angle)
+}
+
+fn euler(q: DQuat, undo: fn(Euler) -> Euler) -> DQuat {
+    undo(Euler::from_quat(q)).to_quat()
+}
+
+fn to_degrees(a: Euler) -> Euler {
+    Euler { roll: a.roll.to_degrees(), pitch: a.pitch.to_degrees(), yaw: a.yaw.to_degrees() }
+}
+
+/// The constant turn about the vertical that brings estimates nearest to the truth, rad, and is to be taken out:
+/// the `ψ` that maximises `Σ (e_w·cos(ψ/2) + e_z·sin(ψ/2))²`.
+pub(super) fn heading_offset(errors: impl Iterator<Item = DQuat>) -> f64 {
+    let (sine, cosine) =
+        errors.fold((0.0, 0.0), |(s, c), e| (s + 2.0 * e.w * e.z, c + e.w * e.w - e.z * e.z));
+    libm::atan2(sine, cosine)
+}
+
+/// An attitude turned back by a heading.
+pub(super) fn turned_back(attitude: Attitude, heading: f64) -> Attitude {
+    Attitude::from_quat(turn(DVec3::Z, -heading) * attitude.q)
+}

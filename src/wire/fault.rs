@@ -1,0 +1,119 @@
+//! Faults of an output: what becomes of packets on their way, for a while. They are at work in `faults`.
+
+use super::Protocol;
+use crate::keys::{Key, KeyError, Takes, Values};
+use crate::quantity::{Kind, Sign};
+use crate::time::{NANOS, SimTime};
+use std::fmt;
+use std::ops::Range;
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaultKind {
+    /// Packets are missing at random, a `share` of them.
+    Drop,
+    /// `bits` of a `share` of the packets are flipped.
+    Corrupt,
+    /// A `share` of the packets comes twice.
+    Duplicate,
+    /// A `share` of the packets is overtaken by the next one.
+    Reorder,
+    /// Nothing goes out; then everything at once.
+    Stall,
+    /// A `share` of the packets goes out in `pieces`, a `gap` apart.
+    Split,
+}
+
+/// The longest stall: its packets are kept in memory.
+const LONGEST_STALL: SimTime = SimTime(10 * NANOS);
+
+impl FaultKind {
+    /// Every kind.
+    pub const ALL: [FaultKind; 6] = [
+        FaultKind::Drop,
+        FaultKind::Corrupt,
+        FaultKind::Duplicate,
+        FaultKind::Reorder,
+        FaultKind::Stall,
+        FaultKind::Split,
+    ];
+
+    /// As scenes write it.
+    pub const fn name(self) -> &'static str {
+        ["drop", "corrupt", "duplicate", "reorder", "stall", "split"][self as usize]
+    }
+
+    /// Its keys besides `output`, `kind`, `start` and `duration`.
+    pub fn keys(self) -> Vec<Key> {
+        let key = |name, takes, default, about| Key { name, takes, default: Some(default), about };
+        let share = |default, about| {
+            key("share", Takes::Scalar(Kind::RATIO.signed(Sign::NonNegative)), default, about)
+        };
+        match self {
+            FaultKind::Drop => vec![share("1 %", "of the packets is missing")],
+            FaultKind::Corrupt => vec![
+                share("1 %", "of the packets is hurt"),
+                key("bits", Takes::Whole(1, 64), "1", "flipped in each"),
+                key("hurts", Takes::Word(&["packet", "framing"]), "packet", "what may be hit"),
+            ],
+            FaultKind::Duplicate => vec![share("1 %", "of the packets comes twice")],
+            FaultKind::Reorder => vec![share("1 %", "of the packets is overtaken")],
+            FaultKind::Stall => vec![],
+            FaultKind::Split => vec![
+                share("100 %", "of the packets goes out in pieces"),
+                key("pieces", Takes::Whole(2, 16), "2", "of a packet"),
+                key("gap", Takes::Duration, "1 ms", "from piece to piece"),
+            ],
+        }
+    }
+}
+
+/// A fault of an output.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// What goes wrong.
+    pub kind: FaultKind,
+    /// From when on.
+    pub start: SimTime,
+    /// Until when.
+    pub end: SimTime,
+    /// The values of its kind's keys.
+    pub values: Values,
+}
+
+impl fmt::Display for Fault {
+    /// `drop from 2 s to 3 s`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} from {}", self.kind.name(), self.start)?;
+        if self.end < SimTime::FOREVER { write!(f, " to {}", self.end) } else { Ok(()) }
+    }
+}
+
+impl Fault {
+    /// Whether a value cannot be.
+    ///
+    /// # Errors
+    /// The key and what would be right.
+    pub fn check(&self) -> Result<(), KeyError> {
+        if self.values.scalar("share").is_some_and(|share| share > 1.0) {
+            return Err(KeyError::new("share", "a share of the packets is at most 100 %"));
+        }
+        if self.kind == FaultKind::Stall && self.end - self.start > LONGEST_STALL {
+            let message = format!(
+                "a stall lasts {LONGEST_STALL} at most, for its packets are kept; for a link that is away longer write kind = \"drop\", share = \"100 %\""
+            );
+            return Err(KeyError::new("duration", message));
+        }
+        Ok(())
+    }
+}
+
+/// The bytes of a packet that may be hurt without hurting its neighbours, and the byte that none of them may become.
+pub(super) fn inside(protocol: Protocol, len: usize) -> (Range<usize>, Option<u8>) {
+    match protocol {
+        Protocol::Mpu => (0..len.saturating_sub(1), Some(0)),
+        // Magic, length, flags, sequence, sender and message: without them the length of the packet is lost.
+        Protocol::Mavlink => (10.min(len)..len, None),
+        Protocol::Csv | Protocol::Jsonl => (0..len.saturating_sub(1), Some(b'\n')),
+    }
+}

@@ -1,0 +1,247 @@
+//! The faults of one output at work on its packets, between the encoder and whoever sends them.
+//!
+//! They know scene time and packets alone, so the same scene gives the same bytes at any speed. What is sent later
+//! than it would be leaves [`Packet::nothing`] in its place, so that time goes on for the other side of a queue.
+//! Random ones draw once a packet, from the stream `output/I/fault/N/KIND`: I counts the run's outputs, N the faults
+//! of this one.
+
+use super::fault::{Fault, FaultKind, inside};
+use super::{Packet, Protocol};
+use crate::random::{self, Stream};
+use crate::sensor::ByKind;
+use crate::time::SimTime;
+use rand::RngExt;
+use std::collections::VecDeque;
+use std::mem;
+
+/// What a fault has done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Acts {
+    /// The fault.
+    pub kind: FaultKind,
+    /// The same with its times, as a person reads it.
+    pub what: String,
+    /// The packets it acted on, up to the time settled.
+    pub packets: u64,
+    /// When it acted on others: packets are made ahead of time.
+    ahead: VecDeque<SimTime>,
+}
+
+impl Acts {
+    /// Counts what was done up to, not including, `t`.
+    pub fn settle(&mut self, t: SimTime) {
+        while self.ahead.front().is_some_and(|at| *at < t) {
+            self.ahead.pop_front();
+            self.packets += 1;
+        }
+    }
+}
+
+/// Every fault of an output.
+#[derive(Debug)]
+pub struct Faults {
+    chain: Vec<Faulty>,
+    /// Samples that were taken out with their packets, those that these had replaced too.
+    taken: ByKind<u64>,
+    /// Samples that go out a second time.
+    added: ByKind<u64>,
+    through: Vec<Packet>,
+    now: SimTime,
+}
+
+impl Faults {
+    /// Those of the run's output `output`, in the order given but for splits, which are the last thing that happens to
+    /// a packet. `None` without any.
+    pub fn new(faults: &[Fault], protocol: Protocol, seed: u64, output: usize) -> Option<Faults> {
+        let faulty = |(n, fault): (usize, &Fault)| {
+            let stream = format!("output/{output}/fault/{n}/{}", fault.kind.name());
+            Faulty::new(fault, protocol, random::stream(seed, &stream))
+        };
+        let mut chain: Vec<_> = faults.iter().enumerate().map(faulty).collect();
+        chain.sort_by_key(|faulty| faulty.acts.kind == FaultKind::Split);
+        let (taken, added) = Default::default();
+        (!chain.is_empty()).then(|| Faults { chain, taken, added, through: Vec::new(), now: SimTime::ZERO })
+    }
+
+    /// The scene, in whose time faults are given, starts at `t`.
+    pub fn scene_starts(&mut self, t: SimTime) {
+        for faulty in &mut self.chain {
+            (faulty.start, faulty.end) = (faulty.start + t, faulty.end + t);
+        }
+    }
+
+    /// Lets packets made at `t` pass: leaves what goes out of them, and of those before, by then.
+    pub fn pass(&mut self, t: SimTime, packets: &mut Vec<Packet>) {
+        self.now = t;
+        self.through(Some(t), packets);
+    }
+
+    /// At the end: what is still held goes out, as `packets` do.
+    pub fn end(&mut self, packets: &mut Vec<Packet>) {
+        self.through(None, packets);
+    }
+
+    fn through(&mut self, t: Option<SimTime>, packets: &mut Vec<Packet>) {
+        let Faults { chain, taken, added, through, now } = self;
+        for faulty in chain {
+            through.clear();
+            faulty.release(t, *now, through);
+            for packet in packets.drain(..) {
+                match packet.is_nothing() {
+                    true => through.push(packet),
+                    false => faulty.act(packet, t, through, taken, added),
+                }
+            }
+            mem::swap(packets, through);
+        }
+    }
+
+    /// Of the samples that an encoder took in, those that its packets here carry or replace, once each time.
+    pub fn account(&self, samples: ByKind<u64>) -> ByKind<u64> {
+        std::array::from_fn(|i| samples[i] + self.added[i] - self.taken[i])
+    }
+
+    /// Counts what was done up to, not including, `t`.
+    pub fn settle(&mut self, t: SimTime) {
+        self.chain.iter_mut().for_each(|faulty| faulty.acts.settle(t));
+    }
+
+    /// What each has done.
+    pub fn into_acts(self) -> Vec<Acts> {
+        self.chain.into_iter().map(|faulty| faulty.acts).collect()
+    }
+}
+
+/// One fault.
+#[derive(Debug)]
+struct Faulty {
+    start: SimTime,
+    end: SimTime,
+    share: f64,
+    bits: u64,
+    /// Whether only the inside of a packet is hurt.
+    spares_framing: bool,
+    pieces: u64,
+    gap: SimTime,
+    protocol: Protocol,
+    stream: Stream,
+    /// What goes out later, in that order.
+    held: VecDeque<Packet>,
+    acts: Acts,
+}
+
+impl Faulty {
+    fn new(fault: &Fault, protocol: Protocol, stream: Stream) -> Faulty {
+        let Fault { kind, start, end, values } = fault;
+        Faulty {
+            start: *start,
+            end: *end,
+            share: values.scalar("share").unwrap_or(1.0),
+            bits: values.whole("bits").unwrap_or(1),
+            spares_framing: values.word("hurts") != Some("framing"),
+            pieces: values.whole("pieces").unwrap_or(1),
+            gap: values.time("gap").unwrap_or_default(),
+            protocol,
+            stream,
+            held: VecDeque::new(),
+            acts: Acts { kind: *kind, what: fault.to_string(), packets: 0, ahead: VecDeque::new() },
+        }
+    }
+
+    /// What was held and goes out by `t` (`None`: at the end), it being `now`.
+    fn release(&mut self, t: Option<SimTime>, now: SimTime, out: &mut Vec<Packet>) {
+        match self.acts.kind {
+            FaultKind::Stall if t.is_none_or(|t| t >= self.end) => {
+                let due = self.end.min(now);
+                out.extend(self.held.drain(..).map(|packet| Packet { due: packet.due.max(due), ..packet }));
+            }
+            FaultKind::Split => {
+                while let Some(rest) = self.held.pop_front_if(|rest| t.is_none_or(|t| rest.due <= t)) {
+                    out.push(rest);
+                }
+            }
+            FaultKind::Reorder if t.is_none() => out.extend(self.held.drain(..)),
+            _ => {}
+        }
+    }
+
+    fn act(
+        &mut self,
+        mut packet: Packet,
+        t: Option<SimTime>,
+        out: &mut Vec<Packet>,
+        taken: &mut ByKind<u64>,
+        added: &mut ByKind<u64>,
+    ) {
+        let due = packet.due;
+        if self.acts.kind == FaultKind::Split {
+            // The next packet of a stream brings the rest of the one before along.
+            self.held.clear();
+        }
+        if self.acts.kind == FaultKind::Reorder
+            && let Some(overtaken) = self.held.pop_front()
+        {
+            self.acts.ahead.push_back(due);
+            return out.extend([packet, Packet { due, ..overtaken }]);
+        }
+        if !(self.start..self.end).contains(&due) || !self.hits() {
+            return out.push(packet);
+        }
+        match self.acts.kind {
+            FaultKind::Drop => {
+                for (i, taken) in taken.iter_mut().enumerate() {
+                    *taken += u64::from(packet.carries >> i & 1) + u64::from(packet.replaced[i]);
+                }
+                out.push(Packet::nothing(due, 0));
+            }
+            FaultKind::Corrupt => {
+                self.corrupt(&mut packet);
+                out.push(packet);
+            }
+            FaultKind::Duplicate => {
+                for (i, added) in added.iter_mut().enumerate() {
+                    *added += u64::from(packet.carries >> i & 1);
+                }
+                out.extend([packet, Packet { replaced: ByKind::default(), ..packet }]);
+            }
+            // Counted when it happens.
+            FaultKind::Reorder => {
+                self.held.push_back(packet);
+                return out.push(Packet::nothing(due, 0));
+            }
+            FaultKind::Stall if t.is_none_or(|t| t >= self.end) => return out.push(packet),
+            FaultKind::Stall => {
+                self.held.push_back(packet);
+                out.push(Packet::nothing(due, 0));
+            }
+            FaultKind::Split => {
+                packet.piece = packet.len.div_ceil(self.pieces as u16);
+                let later = |i: u64| SimTime(due.0.saturating_add(self.gap.0.saturating_mul(i as i64)));
+                let rest = (1..self.pieces).map(|i| Packet::nothing(later(i), packet.piece));
+                self.held.extend(rest);
+                out.push(packet);
+            }
+        }
+        self.acts.ahead.push_back(due);
+    }
+
+    fn hits(&mut self) -> bool {
+        self.acts.kind == FaultKind::Stall || self.stream.random::<f64>() < self.share
+    }
+
+    /// Flips bits, no bit twice.
+    fn corrupt(&mut self, packet: &mut Packet) {
+        let len = usize::from(packet.len);
+        let (within, never) = if self.spares_framing { inside(self.protocol, len) } else { (0..len, None) };
+        let mut places: Vec<_> = within.flat_map(|byte| (0..8).map(move |bit| (byte, 1u8 << bit))).collect();
+        let mut left = self.bits;
+        while left > 0 && !places.is_empty() {
+            let (byte, bit) = places.swap_remove(self.stream.random_range(0..places.len()));
+            let flipped = packet.bytes[byte] ^ bit;
+            if Some(flipped) != never {
+                packet.bytes[byte] = flipped;
+                left -= 1;
+            }
+        }
+    }
+}
