@@ -13,7 +13,7 @@ pub use text::{number, table};
 pub use times::Times;
 pub use timing::{Baseline, SensorTiming, TimingReport};
 
-use crate::score::Score;
+use crate::score::Figures;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -48,7 +48,17 @@ pub struct Report {
     pub links: Vec<LinkReport>,
     /// How well the other side knew its attitude, where it answered.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub attitude: Option<Score>,
+    pub attitude: Option<AttitudeReport>,
+}
+
+/// How well somebody knew the attitude.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AttitudeReport {
+    /// Whose estimate it is.
+    pub estimator: String,
+    /// What it amounts to.
+    #[serde(flatten)]
+    pub figures: Figures,
 }
 
 /// What a run ran on.

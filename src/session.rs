@@ -33,7 +33,7 @@ mod tally;
 mod waiting;
 mod watch;
 
-pub use answers::Off;
+pub use answers::{Judging, Off};
 pub use control::run;
 pub use interrupt::on_interrupt;
 pub use pacer::Speed;
@@ -43,7 +43,7 @@ use crate::geometry::Attitude;
 use crate::link::{Address, LinkError};
 use crate::report::{LinkReport, PacingReport, SensorReport};
 use crate::scene::{Output, Plan};
-use crate::score::Score;
+use crate::score::Figures;
 use crate::time::SimTime;
 use crate::wire::Packet;
 use std::sync::Arc;
@@ -72,8 +72,8 @@ pub struct Job {
     pub command: Vec<String>,
     /// Whether standard output is ours alone: the command's then goes to standard error.
     pub keep_stdout: bool,
-    /// What the estimator on the other side is called in the score.
-    pub estimator: String,
+    /// How what the other side estimates is judged.
+    pub judging: Judging,
     /// The processor that the pacing thread is to keep to.
     pub cpu: Option<usize>,
     /// A comparison with a bare timer, on the pacing thread.
@@ -154,8 +154,8 @@ pub struct Outcome {
     /// The faults of outputs that acted: `mpu@pty drop from 2 s to 3 s`.
     pub faults: Vec<String>,
     /// What the other side estimated, judged.
-    pub score: Option<Score>,
-    /// Every estimate that came back.
+    pub attitude: Option<Figures>,
+    /// Every estimate that came back, with the scene time at which it held as far as that is known.
     pub estimates: Vec<(SimTime, Attitude)>,
     /// The command's exit code; `None` without a command, or when it was ended by us.
     pub command: Option<i32>,

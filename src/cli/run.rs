@@ -6,11 +6,11 @@ use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary};
 use crate::link::Address;
 use crate::report::{
-    Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
+    AttitudeReport, Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
 };
 use crate::scene::{Destination, Output, OutputFault, Overload, Plan};
-use crate::score::Score;
-use crate::session::{self, Event, Job, Outcome, Speed};
+use crate::score::{Align, DelayKnown, Figures};
+use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
 use serde_json::Value;
@@ -43,6 +43,12 @@ pub struct Arguments {
     /// Pass the controller's other messages to and from a ground station over UDP
     #[arg(long, value_name = "ADDR:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:14550", value_parser = options::ground)]
     qgc: Option<Address>,
+    /// Scene time from which on the other side's estimates are judged
+    #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::rest)]
+    settle: SimTime,
+    /// What is taken out of its estimates first: nothing, or one constant heading, which six axes cannot know
+    #[arg(long, value_name = "none|heading", default_value = "none")]
+    align: Alignment,
     /// Keep the pacing thread to this processor
     #[arg(long, value_name = "N", value_parser = options::processor)]
     cpu: Option<usize>,
@@ -66,6 +72,22 @@ pub struct Arguments {
     command: Vec<String>,
 }
 
+/// `--align`.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Alignment {
+    None,
+    Heading,
+}
+
+impl From<Alignment> for Align {
+    fn from(alignment: Alignment) -> Align {
+        match alignment {
+            Alignment::None => Align::None,
+            Alignment::Heading => Align::Heading,
+        }
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let plan = plan(arguments)?;
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
@@ -80,12 +102,13 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     limits.iter().try_for_each(|limit| limit.check(&as_json))?;
     refuse(arguments, &plan, &outputs)?;
     let plan = Arc::new(plan);
+    let estimator = estimator(demonstration, &outputs);
     let job = Job {
         plan: plan.clone(),
         end: arguments.span.unwrap_or(plan.duration),
         rest: rest(arguments.rest, &outputs),
         ground: ground(arguments.qgc.clone(), &outputs)?,
-        estimator: estimator(demonstration, &outputs),
+        judging: Judging { align: arguments.align.into(), settle: arguments.settle },
         outputs,
         speed: arguments.speed,
         wait: arguments.wait,
@@ -97,6 +120,8 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     };
     let (outcome, received) = play(job, &plan, demonstration)?;
     fill(&mut report, &outcome, arguments.speed);
+    report.attitude =
+        outcome.attitude.clone().map(|figures| AttitudeReport { estimator: estimator.clone(), figures });
     report.faults = [plan.faults_until(outcome.played), outcome.faults.clone()].concat();
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
@@ -279,14 +304,21 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         lost_seq: None,
         broken: None,
     };
-    let score = Score {
-        estimator: String::new(),
+    let figures = Figures {
         samples: 0,
         rms_deg: 0.0,
         max_deg: 0.0,
         inclination_rms_deg: 0.0,
+        inclination_max_deg: 0.0,
         heading_rms_deg: 0.0,
+        heading_max_deg: 0.0,
         delay_ms: None,
+        delay_known: DelayKnown::Unknown,
+        delay_doubt: None,
+        clock_offset_s: Some(0.0),
+        heading_offset_deg: Some(0.0),
+        looks: None,
+        looks_rms_deg: None,
     };
     Report {
         version: env!("CARGO_PKG_VERSION").into(),
@@ -302,7 +334,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         host: host(false, false, Some(PacingReport::default())),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),
-        attitude: Some(score),
+        attitude: Some(AttitudeReport { estimator: String::new(), figures }),
     }
 }
 
@@ -325,7 +357,6 @@ pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.host = host(outcome.realtime, outcome.memory_locked, outcome.pacing);
     report.sensors = outcome.sensors.clone();
     report.links = outcome.links.clone();
-    report.attitude = outcome.score.clone();
 }
 
 /// Losses, broken limits, and a command that failed.

@@ -13,7 +13,7 @@ use crate::dataset::Folder;
 use crate::link::Address;
 use crate::report::Limit;
 use crate::scene::{Destination, Output, Plan};
-use crate::session::{self, Event, Job, Outcome, Speed, Tap, Watch};
+use crate::session::{self, Event, Job, Judging, Outcome, Speed, Tap, Watch};
 use crate::time::{NANOS, Rate, SimTime};
 use crate::wire::{self, Protocol};
 use collector::Collector;
@@ -157,7 +157,7 @@ fn measure(
         wait: WAIT,
         command: Vec::new(),
         keep_stdout: arguments.json,
-        estimator: String::new(),
+        judging: Judging::default(),
         cpu: arguments.cpu,
         watch: Some(Watch { clock, slice: SLICE, rate, records }),
         tap,

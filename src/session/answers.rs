@@ -3,7 +3,7 @@
 use super::{Shared, Speed};
 use crate::geometry::Attitude;
 use crate::scene::Plan;
-use crate::score::{AttitudeError, Score, Scorer};
+use crate::score::{self, Align, AttitudeError, Figures, Timed};
 use crate::time::SimTime;
 use crate::wire::dialogue::{Estimate, Stamp};
 use glam::DVec3;
@@ -40,50 +40,101 @@ impl Off {
     }
 }
 
-/// Estimates of all links together.
+/// How the estimates of a run are judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Judging {
+    /// What is taken out of them first.
+    pub align: Align,
+    /// Scene time from which on they count.
+    pub settle: SimTime,
+}
+
+/// Estimates of all links.
 pub(super) struct Heard {
     plan: Arc<Plan>,
     shared: Arc<Shared>,
     speed: Speed,
     /// Whether stream time waits for the other side.
     lockstep: bool,
-    scorer: Scorer,
-    pub estimates: Vec<(SimTime, Attitude)>,
+    /// By link, in the order in which they arrived.
+    links: Vec<Vec<Timed>>,
     pub newest: Option<Off>,
+}
+
+/// What the estimates amount to.
+#[derive(Debug, Default)]
+pub(super) struct Judgement {
+    pub figures: Option<Figures>,
+    /// Each estimate, as it was said, with the scene time at which it held as far as that is known.
+    pub estimates: Vec<(SimTime, Attitude)>,
 }
 
 impl Heard {
     pub(super) fn new(plan: Arc<Plan>, shared: Arc<Shared>, speed: Speed, lockstep: bool) -> Heard {
-        Heard {
-            plan,
-            shared,
-            speed,
-            lockstep,
-            scorer: Scorer::default(),
-            estimates: Vec::new(),
-            newest: None,
-        }
+        Heard { plan, shared, speed, lockstep, links: Vec::new(), newest: None }
     }
 
-    /// Judges an estimate that arrived at `now` (ns on the run's clock); one of the rest before the scene counts for
-    /// nothing.
-    pub(super) fn take_in(&mut self, Estimate { stamp, attitude }: Estimate, now: i64) {
-        let stream = match stamp {
-            Stamp::Sample(t) => t,
+    /// Keeps an estimate that arrived on a link at `now` (ns on the run's clock); one of the rest before the scene
+    /// counts for nothing.
+    pub(super) fn take_in(&mut self, link: usize, Estimate { stamp, attitude }: Estimate, now: i64) {
+        let arrived = self.stream_time(now);
+        let (Some(t), Some(arrival)) = (
             // Until its delay is known an estimate is taken to hold when it arrives.
-            Stamp::Own(_) | Stamp::Arrival => self.stream_time(now),
+            self.shared.scene_time(if let Stamp::Sample(t) = stamp { t } else { arrived }),
+            self.shared.scene_time(arrived),
+        ) else {
+            return;
         };
-        let Some(t) = self.shared.scene_time(stream) else { return };
-        let truth = self.plan.trajectory.at(t).attitude;
-        let delay = matches!(stamp, Stamp::Sample(_)).then(|| self.delay_ms(now, stream)).flatten();
-        self.scorer.add(AttitudeError::between(truth, attitude), delay);
-        self.newest = Some(Off::between(truth, attitude));
-        self.estimates.push((t, attitude));
+        let stamp = match stamp {
+            Stamp::Sample(_) => score::Stamp::Sample(t),
+            Stamp::Own(ns) => score::Stamp::Own(ns),
+            Stamp::Arrival => score::Stamp::Arrival,
+        };
+        self.newest = Some(Off::between(self.plan.trajectory.at(t).attitude, attitude));
+        if self.links.len() <= link {
+            self.links.resize_with(link + 1, Vec::new);
+        }
+        self.links[link].push(Timed { arrival, stamp, attitude });
     }
 
-    /// What they amount to, or `None` without one.
-    pub(super) fn score(&self, estimator: &str) -> Option<Score> {
-        self.scorer.score(estimator)
+    /// Whether there is any.
+    pub(super) fn is_empty(&self) -> bool {
+        self.links.iter().all(Vec::is_empty)
+    }
+
+    /// When the newest arrived, in scene time.
+    #[cfg(test)]
+    pub(super) fn newest_arrival(&self) -> Option<SimTime> {
+        self.links.iter().filter_map(|link| Some(link.last()?.arrival)).max()
+    }
+
+    /// Judges the estimates of the link that said most, of a scene that was played up to `played`.
+    pub(super) fn judge(&self, judging: Judging, played: SimTime) -> Judgement {
+        let Some(said) = self.links.iter().rev().max_by_key(|link| link.len()) else {
+            return Judgement::default();
+        };
+        let truth = |t: SimTime| self.plan.trajectory.at(t.max(SimTime::ZERO)).attitude;
+        let Judging { align, settle: from } = judging;
+        let options = score::Options { align, from, until: played, ..score::Options::default() };
+        let mut figures = score::judge(&truth, said, &options).map(|judged| judged.figures);
+        let (late, ahead) = figures.as_ref().map_or((0, None), |figures| {
+            let ns = |value: Option<f64>, unit: f64| value.map(|value| (value * unit) as i64);
+            (ns(figures.delay_ms, 1e6).unwrap_or_default(), ns(figures.clock_offset_s, 1e9))
+        });
+        let held = |it: &Timed| match (it.stamp, ahead) {
+            (score::Stamp::Sample(t), _) => t,
+            (score::Stamp::Own(ns), Some(ahead)) => SimTime(ns - ahead),
+            _ => it.arrival - SimTime(late),
+        };
+        let estimates = said.iter().map(|it| (held(it), it.attitude)).collect();
+        if let Some(figures) = &mut figures {
+            // What was told in scene time is told in real time, which nobody keeps where nothing is paced.
+            figures.delay_ms = match self.speed {
+                Speed::Times(times) => figures.delay_ms.map(|ms| ms / times),
+                Speed::Max => None,
+            };
+        }
+        Judgement { figures, estimates }
     }
 
     /// Stream time at `now`.
@@ -94,20 +145,6 @@ impl Heard {
                 SimTime(((now - start) as f64 * times) as i64)
             }
             _ => SimTime(self.shared.stream_ns.load(Ordering::Relaxed)),
-        }
-    }
-
-    /// From when the sample was due to now, in real time.
-    fn delay_ms(&self, now: i64, t: SimTime) -> Option<f64> {
-        let stretched_at = self.shared.stretched_at_ns.load(Ordering::Relaxed);
-        let start = self.shared.start_ns.load(Ordering::Relaxed);
-        if t.0 < stretched_at {
-            // Due by an earlier start than this one.
-            return None;
-        }
-        match self.speed {
-            Speed::Times(times) if start >= 0 => Some((now - start) as f64 / 1e6 - t.0 as f64 / 1e6 / times),
-            _ => None,
         }
     }
 }

@@ -385,7 +385,7 @@ mod tests {
             wait: Duration::from_secs(60),
             command: Vec::new(),
             keep_stdout: false,
-            estimator: String::new(),
+            judging: Judging::default(),
             cpu: None,
             watch: None,
             tap: None,

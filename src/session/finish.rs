@@ -65,7 +65,7 @@ impl Run {
         let now = self.clock.now();
         tallies.iter_mut().for_each(|tally| tally.gaps.end(now));
         drop(pacer.senders);
-        if self.tapped || !self.talk.borrow().heard.estimates.is_empty() {
+        if self.tapped || !self.talk.borrow().heard.is_empty() {
             tokio::time::sleep(LAST_ANSWERS).await;
         }
         for ear in &self.ears {
@@ -94,7 +94,7 @@ impl Run {
         let paced = self.job.speed != Speed::Max;
         let played = self.played(&gone);
         made.faults.iter_mut().flatten().for_each(|acts| acts.settle(played + self.rest()));
-        let heard = &self.talk.borrow().heard;
+        let judgement = self.talk.borrow().heard.judge(self.job.judging, played);
         Ok(Outcome {
             played,
             interrupted: self.interrupted,
@@ -107,8 +107,8 @@ impl Run {
             sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
             links: self.link_reports(&tallies, &gone, names, &made, &left),
             faults: links::fired(&self.job.outputs, &made),
-            score: heard.score(&self.job.estimator),
-            estimates: heard.estimates.clone(),
+            attitude: judgement.figures,
+            estimates: judgement.estimates,
             command,
         })
     }
@@ -182,7 +182,7 @@ impl Run {
             sensors: tally::sensors(&self.job.plan, &tallies, ByKind::default(), ByKind::default(), false),
             links: self.link_reports(&tallies, &gone, names, &Made::default(), &Left::nothing(gone.len())),
             faults: Vec::new(),
-            score: None,
+            attitude: None,
             estimates: Vec::new(),
             command: self.ended,
         }

@@ -86,7 +86,7 @@ impl Talk {
 
     fn said(&mut self, link: usize, said: Said<'_>, now: i64) {
         match said {
-            Said::Estimate(estimate) => self.heard.take_in(estimate, now),
+            Said::Estimate(estimate) => self.heard.take_in(link, estimate, now),
             Said::Reply(bytes) => self.reply(link, bytes),
             Said::Took => {
                 self.sides[link].took.fetch_add(1, Ordering::Release);

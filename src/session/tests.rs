@@ -188,7 +188,7 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
             wait: Duration::from_secs(1),
             command: Vec::new(),
             keep_stdout: false,
-            estimator: String::new(),
+            judging: Judging::default(),
             cpu: None,
             watch: None,
             tap: None,
