@@ -109,6 +109,8 @@ pub struct SensorReport {
     pub sent: u64,
     /// Samples that a full or broken link, or a newer sample, cost.
     pub dropped: u64,
+    /// Those of the dropped that a newer sample replaced because packets are fewer than samples.
+    pub replaced: u64,
     /// Samples still on their way when the run was stopped.
     pub queued: u64,
     /// The moment just before the write call minus due, µs.

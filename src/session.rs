@@ -270,6 +270,8 @@ impl Shared {
 #[cfg(test)]
 mod fault_tests;
 #[cfg(test)]
+mod session_tests;
+#[cfg(test)]
 mod talk_tests;
 #[cfg(test)]
 mod tests;

@@ -7,10 +7,14 @@
 pub mod dialogue;
 mod fault;
 mod faults;
+mod latest;
 mod mavlink;
+mod mip;
 mod mpu;
+mod msp;
 pub mod samples;
 mod text;
+mod vectornav;
 
 pub use fault::{Fault, FaultKind};
 pub use faults::{Acts, Faults};
@@ -22,6 +26,9 @@ use crate::schedule::{Schedule, Ticks};
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
+
+pub use mavlink::{Extra, Extras};
+pub use ratetable_protocols::mavlink::Version;
 
 /// The longest packet of any protocol, bytes: a signed MAVLink 2 message, such as a ground station may send.
 pub const MAX_PACKET: usize = 280;
@@ -83,6 +90,12 @@ pub enum Protocol {
     Mpu,
     /// MAVLink 2 HIL_SENSOR.
     Mavlink,
+    /// INAV's simulator message in MSPv2 frames.
+    Msp,
+    /// Binary outputs of a VN-100, for ArduPilot.
+    Vectornav,
+    /// MicroStrain inertial packets, for ArduPilot.
+    Mip,
     /// A line of comma-separated values a reading.
     Csv,
     /// A JSON object a reading.
@@ -91,11 +104,19 @@ pub enum Protocol {
 
 impl Protocol {
     /// Every protocol.
-    pub const ALL: [Protocol; 4] = [Protocol::Mpu, Protocol::Mavlink, Protocol::Csv, Protocol::Jsonl];
+    pub const ALL: [Protocol; 7] = [
+        Protocol::Mpu,
+        Protocol::Mavlink,
+        Protocol::Msp,
+        Protocol::Vectornav,
+        Protocol::Mip,
+        Protocol::Csv,
+        Protocol::Jsonl,
+    ];
 
     /// As `--to` spells it.
     pub const fn name(self) -> &'static str {
-        ["mpu", "mavlink", "csv", "jsonl"][self as usize]
+        ["mpu", "mavlink", "msp", "vectornav", "mip", "csv", "jsonl"][self as usize]
     }
 
     /// The protocol of that name.
@@ -108,6 +129,9 @@ impl Protocol {
         [
             "registers of an MPU-6050 or MPU-9250 in COBS frames with a CRC: imu, gyro, accel, mag, config",
             "MAVLink 2: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second",
+            "MSPv2 for INAV: its simulator message (0x201F) with all sensors, at most 100 a second",
+            "a VN-100 for ArduPilot: IMU packets at the gyro's rate or that asked for, AHRS packets at 50 Hz",
+            "a MicroStrain unit for ArduPilot: pressure, mag, accel and gyro at each gyro tick",
             "t_ns,sensor,x,y,z: one line a reading, in the scene's axes",
             "the same as one JSON object a line",
         ][self as usize]
@@ -143,6 +167,10 @@ pub struct Options {
     pub layout: Option<Layout>,
     /// Whose ways the protocol keeps to.
     pub controller: Option<Controller>,
+    /// For `mavlink`: the version of its framing.
+    pub version: Version,
+    /// For `mavlink`: what is sent beside HIL_SENSOR.
+    pub extras: Extras,
 }
 
 /// What an encoder needs to know of the scene.
@@ -190,6 +218,9 @@ pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
     match protocol {
         Protocol::Mpu => Box::new(mpu::Mpu::new(setup)),
         Protocol::Mavlink => Box::new(mavlink::Mavlink::new(setup)),
+        Protocol::Msp => Box::new(msp::Msp::new(setup)),
+        Protocol::Vectornav => Box::new(vectornav::Vectornav::new(setup)),
+        Protocol::Mip => Box::new(mip::Mip::new(setup)),
         Protocol::Csv => Box::new(text::Text::csv(setup)),
         Protocol::Jsonl => Box::new(text::Text::jsonl(setup)),
     }
@@ -207,19 +238,38 @@ pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> R
     {
         return Err("`layout = \"burst\"` needs both [gyro] and [accel]".into());
     }
-    Ok(())
+    let px4 = matches!(options.controller, Some(Controller::Px4 | Controller::Px4Sitl));
+    let truth = options.extras.iter().find(|extra| px4 && extra.is_truth());
+    truth.map_or(Ok(()), |truth| {
+        Err(format!(
+            "{} tells the truth, and PX4 is to find it out itself: in HITL it fights the estimator; leave it out, the score needs it not",
+            truth.name()
+        ))
+    })
 }
 
 /// What a protocol cannot carry of these sensors, for `check` and the report: a sensor faster than the packets
 /// that carry it loses samples to newer ones.
 pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
-    let Some(carrier) = sensors.first().filter(|_| protocol == Protocol::Mavlink) else { return Vec::new() };
-    let faster = sensors.iter().filter(|sensor| sensor.rate.as_hz() > carrier.rate.as_hz());
+    let Some(carrier) = sensors.first() else { return Vec::new() };
+    let tick = format!("at each {} tick ({})", carrier.kind, carrier.rate);
+    let (rate, packets, fits) = match protocol {
+        Protocol::Mavlink => (carrier.rate, format!("HIL_SENSOR {tick}"), String::new()),
+        Protocol::Vectornav | Protocol::Mip => (carrier.rate, format!("a packet {tick}"), String::new()),
+        Protocol::Msp if carrier.rate.as_hz() > msp::FASTEST.as_hz() => (
+            msp::FASTEST,
+            format!("{} packets a second, as many as an INAV board takes", msp::FASTEST.as_hz()),
+            format!("; a rate of {} fits", msp::FASTEST),
+        ),
+        Protocol::Msp => (carrier.rate, format!("a packet {tick}"), String::new()),
+        Protocol::Mpu | Protocol::Csv | Protocol::Jsonl => return Vec::new(),
+    };
+    let faster = sensors.iter().filter(|sensor| sensor.rate.as_hz() > rate.as_hz());
     faster
         .map(|sensor| {
             format!(
-                "mavlink sends HIL_SENSOR at each {} tick ({}): samples of {} ({}) between two of them are replaced by newer ones and counted as dropped",
-                carrier.kind, carrier.rate, sensor.kind, sensor.rate
+                "{} sends {packets}: samples of {} ({}) between two of them are replaced by newer ones and counted as dropped{fits}",
+                protocol.name(), sensor.kind, sensor.rate
             )
         })
         .collect()
@@ -257,6 +307,12 @@ fn at_rest(t: SimTime) -> Truth {
         force: Vector::new(0.0, 0.0, -STANDARD_GRAVITY),
         field: Vector::from_vec(default_field().v),
     }
+}
+
+/// What gyro, accel and mag of a vehicle read that has stopped as it is.
+fn stopped(truth: &Truth) -> [Vector<Body>; 3] {
+    let up = Vector::new(0.0, 0.0, -STANDARD_GRAVITY);
+    [Vector::ZERO, truth.attitude.inverse().apply(up), truth.field]
 }
 
 /// Something sent once a second from t = 0, in scene time.
@@ -310,5 +366,7 @@ impl Newest {
     }
 }
 
+#[cfg(test)]
+mod controller_tests;
 #[cfg(test)]
 mod tests;

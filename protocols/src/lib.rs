@@ -1,9 +1,10 @@
 //! Sensor packets for flight controllers, encoders and decoders, `no_std` and without a heap.
 //!
-//! One room a format: [`mpu`] carries an MPU's registers in a stream that survives damage, and
-//! [`mavlink`] carries a handful of MAVLink messages. Every payload file has the same shape: a
-//! view over bytes (`Payload`), the same as plain values (`Repr` with `parse`, `buffer_len` and
-//! `emit`), then tests over one golden array.
+//! One room a format: [`mpu`] carries an MPU's registers in a stream that survives damage,
+//! [`mavlink`] a handful of MAVLink messages, [`msp`] INAV's simulator message and the questions
+//! around it, [`vectornav`] and [`mip`] what external units send to ArduPilot. Every payload file
+//! has the same shape: a view over bytes (`Payload`), the same as plain values (`Repr` with
+//! `parse`, `buffer_len` and `emit`), then tests over one golden array.
 //!
 //! What this crate promises: nothing panics on any bytes, nothing allocates, nothing reads a
 //! clock, and a damaged packet costs at most itself. What it does not: bytes reordered by the
@@ -14,8 +15,12 @@ mod bytes;
 pub mod cobs;
 mod error;
 pub mod mavlink;
+pub mod mip;
 pub mod mpu;
+pub mod msp;
+mod scanner;
 mod sequence;
+pub mod vectornav;
 
 pub use error::Error;
 pub use sequence::Losses;

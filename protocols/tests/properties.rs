@@ -2,9 +2,10 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::sample::select;
 use ratetable_protocols::mavlink::{self, Header, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
-use ratetable_protocols::{Error, cobs};
+use ratetable_protocols::{Error, cobs, mip, msp, vectornav};
 
 fn any_packet() -> impl Strategy<Value = Packet> {
     prop_oneof![
@@ -26,8 +27,8 @@ fn any_packet() -> impl Strategy<Value = Packet> {
 /// Any message, made from any payload without not-a-number.
 #[allow(clippy::eq_op, reason = "not-a-number is what is not equal to itself")]
 fn any_message() -> impl Strategy<Value = Message> {
-    let ids = prop_oneof![Just(0), Just(2), Just(26), Just(27), Just(30), Just(31), Just(105), Just(107)];
-    (ids, vec(any::<u8>(), 65))
+    let known: Vec<u32> = (0..300).filter(|&id| mavlink::crc_extra(id).is_some()).collect();
+    (select(known), vec(any::<u8>(), mavlink::MAX_PAYLOAD_LEN))
         .prop_map(|(id, bytes)| Message::parse(id, &bytes).unwrap())
         .prop_filter("not-a-number is not equal to itself", |message| message == message)
 }
@@ -39,6 +40,58 @@ fn any_header() -> impl Strategy<Value = Header> {
         system,
         component,
     })
+}
+
+/// Any frame, made from any payload.
+fn any_frame() -> impl Strategy<Value = msp::Message> {
+    use msp::{Direction, Message, api_version, attitude, fc_variant, simulator, simulator_reply};
+    let direction = prop::sample::select(vec![Direction::Request, Direction::Reply, Direction::Refusal]);
+    prop_oneof![
+        (direction, any::<u16>()).prop_map(|(direction, command)| Message::Empty { direction, command }),
+        payload(Direction::Request, simulator::COMMAND, simulator::LEN),
+        payload(Direction::Reply, simulator_reply::COMMAND, simulator_reply::LEN),
+        payload(Direction::Reply, attitude::COMMAND, attitude::LEN),
+        payload(Direction::Reply, api_version::COMMAND, api_version::LEN),
+        payload(Direction::Reply, fc_variant::COMMAND, fc_variant::LEN),
+    ]
+}
+
+fn payload(direction: msp::Direction, command: u16, len: usize) -> impl Strategy<Value = msp::Message> {
+    vec(any::<u8>(), len)
+        .prop_map(move |bytes| msp::Message::parse(direction, command, &bytes).unwrap().unwrap())
+}
+
+fn any_vectornav() -> impl Strategy<Value = vectornav::Packet> {
+    use vectornav::{Packet, ahrs, imu, line::Line};
+    let three = any::<[f32; 3]>;
+    prop_oneof![
+        (any::<u64>(), three(), three(), three(), three(), three(), any::<[f32; 2]>()).prop_map(
+            |(time_ns, gyro, accel, raw_accel, raw_gyro, mag, [temperature, pressure])| Packet::Imu(
+                imu::Repr { time_ns, gyro, accel, raw_accel, raw_gyro, mag, temperature, pressure }
+            )
+        ),
+        (any::<u64>(), three(), any::<[f32; 4]>(), three()).prop_map(
+            |(time_ns, yaw_pitch_roll, xyzw, uncertainty)| Packet::Ahrs(ahrs::Repr {
+                time_ns,
+                yaw_pitch_roll,
+                xyzw,
+                uncertainty
+            })
+        ),
+        "[ -#%-)+-~]{0,96}".prop_map(|text| Packet::Line(Line::new(&text).unwrap())),
+    ]
+}
+
+fn any_mip() -> impl Strategy<Value = mip::imu::Repr> {
+    let vector = any::<Option<[f32; 3]>>;
+    (any::<Option<f32>>(), vector(), vector(), vector())
+        .prop_map(|(pressure, mag, accel, gyro)| mip::imu::Repr { pressure, mag, accel, gyro })
+}
+
+/// Bytes among which many look like the start of a packet.
+fn rubbish() -> impl Strategy<Value = Vec<u8>> {
+    let starts = prop::sample::select(b"$X<>!\xfa\x01\x21\x07ue\x80*\r\nVN".to_vec());
+    vec(prop_oneof![any::<u8>(), starts, Just(0)], 0..1500)
 }
 
 /// The message without what MAVLink 1 cannot say.
@@ -55,6 +108,18 @@ fn as_said_in(version: Version, message: Message) -> Message {
         }
         (Version::V1, Message::ScaledImu(repr)) => {
             Message::ScaledImu(mavlink::scaled_imu::Repr { temperature: 0, ..repr })
+        }
+        (Version::V1, Message::ScaledImu2(repr)) => {
+            Message::ScaledImu2(mavlink::scaled_imu2::Repr { temperature: 0, ..repr })
+        }
+        (Version::V1, Message::ScaledImu3(repr)) => {
+            Message::ScaledImu3(mavlink::scaled_imu3::Repr { temperature: 0, ..repr })
+        }
+        (Version::V1, Message::CommandAck(mavlink::command_ack::Repr { command, result, .. })) => {
+            Message::CommandAck(mavlink::command_ack::Repr { command, result, ..Default::default() })
+        }
+        (Version::V1, Message::HilGps(repr)) => {
+            Message::HilGps(mavlink::hil_gps::Repr { id: 0, yaw: 0, ..repr })
         }
         (Version::V1, Message::AttitudeQuaternion(repr)) => {
             Message::AttitudeQuaternion(mavlink::attitude_quaternion::Repr {
@@ -122,6 +187,94 @@ proptest! {
     }
 
     #[test]
+    fn msp_frames_come_back_however_the_stream_is_cut(frames in vec(any_frame(), 1..10), cut in 1_usize..100) {
+        let mut stream = Vec::new();
+        for frame in &frames {
+            let mut out = [0; msp::MAX_LEN];
+            let len = msp::encode(frame, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = msp::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap().message.unwrap()));
+        }
+        prop_assert_eq!(back, frames);
+    }
+
+    #[test]
+    fn vectornav_packets_come_back_however_the_stream_is_cut(
+        packets in vec(any_vectornav(), 1..10),
+        cut in 1_usize..100,
+    ) {
+        let mut stream = Vec::new();
+        for packet in &packets {
+            let mut out = [0; vectornav::MAX_LEN];
+            let len = vectornav::encode(packet, &mut out).unwrap();
+            prop_assert_eq!(len, packet.buffer_len());
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = vectornav::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap()));
+        }
+        prop_assert_eq!(back, packets);
+    }
+
+    #[test]
+    fn mip_packets_come_back_however_the_stream_is_cut(packets in vec(any_mip(), 1..10), cut in 1_usize..100) {
+        let mut stream = Vec::new();
+        for packet in &packets {
+            let mut out = [0; mip::MAX_LEN];
+            let len = mip::encode(packet, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = mip::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap()));
+        }
+        prop_assert_eq!(back, packets);
+    }
+
+    #[test]
+    fn controllers_bytes_do_not_panic_and_the_packet_behind_them_is_found(
+        rubbish in rubbish(),
+        frame in any_frame(),
+        packet in any_vectornav(),
+        inertial in any_mip(),
+    ) {
+        let mut out = [0; 300];
+        let mut found = false;
+        let len = msp::encode(&frame, &mut out).unwrap();
+        let mut decoder = msp::Decoder::new();
+        let mut on = |received: Result<msp::Received, Error>| {
+            found |= received.is_ok_and(|received| received.message == Some(frame));
+        };
+        decoder.feed(&rubbish, &mut on);
+        decoder.feed(&out[..len], &mut on);
+        decoder.finish(&mut on);
+        prop_assert!(std::mem::take(&mut found), "msp");
+
+        let len = vectornav::encode(&packet, &mut out).unwrap();
+        let mut decoder = vectornav::Decoder::new();
+        let mut on = |received: Result<vectornav::Packet, Error>| found |= received == Ok(packet);
+        decoder.feed(&rubbish, &mut on);
+        decoder.feed(&out[..len], &mut on);
+        decoder.finish(&mut on);
+        prop_assert!(std::mem::take(&mut found), "vectornav");
+
+        let len = mip::encode(&inertial, &mut out).unwrap();
+        let mut decoder = mip::Decoder::new();
+        let mut on = |received: Result<mip::imu::Repr, Error>| found |= received == Ok(inertial);
+        decoder.feed(&rubbish, &mut on);
+        decoder.feed(&out[..len], &mut on);
+        decoder.finish(&mut on);
+        prop_assert!(found, "mip");
+    }
+
+    #[test]
     fn no_bytes_panic_and_the_next_packet_is_found(
         rubbish in vec(prop_oneof![any::<u8>(), Just(0), Just(0xfd), Just(0xfe)], 0..1500),
     ) {
@@ -159,6 +312,14 @@ proptest! {
         let _ = Packet::parse(kind, &bytes);
         let _ = Message::parse(id, &bytes);
         let _ = mpu::decode(&bytes);
+        for direction in [msp::Direction::Request, msp::Direction::Reply] {
+            for command in [id as u16, msp::simulator::COMMAND] {
+                let _ = msp::Message::parse(direction, command, &bytes);
+            }
+        }
+        if let Ok(fields) = mip::imu::Payload::new_checked(&bytes) {
+            let _ = mip::imu::Repr::parse(&fields);
+        }
         let mut short = [0; 20];
         let _ = cobs::decode(&bytes, &mut short);
         let _ = cobs::encode(&bytes, &mut short);
@@ -178,5 +339,24 @@ proptest! {
         let len = mavlink::encode(&header, &message, &mut out).unwrap();
         let refused = mavlink::encode(&header, &message, &mut out[..len - 1]);
         prop_assert_eq!(refused, Err(Error::BufferTooSmall { needed: len }));
+    }
+
+    #[test]
+    fn controllers_packets_need_a_buffer_of_their_length(
+        frame in any_frame(),
+        packet in any_vectornav(),
+        inertial in any_mip(),
+    ) {
+        let mut out = [0; 300];
+        let encoders: [&dyn Fn(&mut [u8]) -> Result<usize, Error>; 3] = [
+            &|out| msp::encode(&frame, out),
+            &|out| vectornav::encode(&packet, out),
+            &|out| mip::encode(&inertial, out),
+        ];
+        for encode in encoders {
+            let len = encode(&mut out).unwrap();
+            prop_assert_eq!(encode(&mut out[..len]), Ok(len));
+            prop_assert_eq!(encode(&mut out[..len - 1]), Err(Error::BufferTooSmall { needed: len }));
+        }
     }
 }

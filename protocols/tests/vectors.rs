@@ -2,8 +2,11 @@
 
 mod common;
 
-use common::{int, mavlink_header, mavlink_message, mpu_packet, vectors};
-use ratetable_protocols::{mavlink, mpu};
+use common::{
+    int, mavlink_header, mavlink_message, mip_packet, mpu_packet, msp_direction, msp_message,
+    vectornav_packet, vectors,
+};
+use ratetable_protocols::{mavlink, mip, mpu, msp, vectornav};
 
 #[test]
 fn mpu_packets_are_the_golden_bytes() {
@@ -55,6 +58,47 @@ fn golden_mavlink_bytes_are_the_messages() {
 }
 
 #[test]
+fn msp_frames_are_the_golden_bytes_and_back() {
+    for vector in vectors("msp") {
+        let (direction, message) = (msp_direction(&vector.json), msp_message(&vector.json));
+        let mut out = [0xee; msp::MAX_LEN];
+        let len = msp::encode(&message, &mut out).unwrap();
+        assert_eq!(out[..len], vector.bytes, "{}", vector.name());
+        let expected =
+            msp::Received { direction, command: int(&vector.json["command"]), message: Some(message) };
+        let mut seen = Vec::new();
+        msp::Decoder::new().feed(&vector.bytes, |received| seen.push(received));
+        assert_eq!(seen, [Ok(expected)], "{}", vector.name());
+    }
+}
+
+#[test]
+fn vectornav_packets_are_the_golden_bytes_and_back() {
+    for vector in vectors("vectornav") {
+        let packet = vectornav_packet(&vector.json);
+        let mut out = [0xee; vectornav::MAX_LEN];
+        let len = vectornav::encode(&packet, &mut out).unwrap();
+        assert_eq!(out[..len], vector.bytes, "{}", vector.name());
+        let mut seen = Vec::new();
+        vectornav::Decoder::new().feed(&vector.bytes, |received| seen.push(received));
+        assert_eq!(seen, [Ok(packet)], "{}", vector.name());
+    }
+}
+
+#[test]
+fn mip_packets_are_the_golden_bytes_and_back() {
+    for vector in vectors("mip") {
+        let packet = mip_packet(&vector.json);
+        let mut out = [0xee; mip::MAX_LEN];
+        let len = mip::encode(&packet, &mut out).unwrap();
+        assert_eq!(out[..len], vector.bytes, "{}", vector.name());
+        let mut seen = Vec::new();
+        mip::Decoder::new().feed(&vector.bytes, |received| seen.push(received));
+        assert_eq!(seen, [Ok(packet)], "{}", vector.name());
+    }
+}
+
+#[test]
 fn every_golden_packet_with_one_bit_flipped_is_refused() {
     for vector in vectors("mpu") {
         flip_every_bit(&vector.bytes, |hurt| {
@@ -74,6 +118,41 @@ fn every_golden_packet_with_one_bit_flipped_is_refused() {
             decoder.finish(refuse);
         });
     }
+    for vector in vectors("msp") {
+        let whole = msp_message(&vector.json);
+        flip_every_bit(&vector.bytes, |hurt| {
+            // The direction is not under the checksum.
+            let turned = hurt[2] != vector.bytes[2];
+            let refuse = |received: Result<msp::Received, _>| {
+                assert!(turned || received.is_err());
+                assert_ne!(received.ok().and_then(|received| received.message), Some(whole));
+            };
+            let mut decoder = msp::Decoder::new();
+            decoder.feed(hurt, refuse);
+            decoder.finish(refuse);
+        });
+    }
+    for vector in vectors("vectornav") {
+        let whole = vectornav_packet(&vector.json);
+        flip_every_bit(&vector.bytes, |hurt| {
+            // A line's checksum may be in small letters, and its end need not be CR LF.
+            let line = matches!(whole, vectornav::Packet::Line(_));
+            let said = &hurt[..hurt.len() - 4];
+            let harmless = line && *said == vector.bytes[..said.len()];
+            let refuse = |received: Result<_, _>| assert!(harmless || received.is_err());
+            let mut decoder = vectornav::Decoder::new();
+            decoder.feed(hurt, refuse);
+            decoder.finish(refuse);
+        });
+    }
+    for vector in vectors("mip") {
+        flip_every_bit(&vector.bytes, |hurt| {
+            let refuse = |received: Result<_, _>| assert!(received.is_err());
+            let mut decoder = mip::Decoder::new();
+            decoder.feed(hurt, refuse);
+            decoder.finish(refuse);
+        });
+    }
 }
 
 fn flip_every_bit(bytes: &[u8], mut check: impl FnMut(&[u8])) {
@@ -86,7 +165,7 @@ fn flip_every_bit(bytes: &[u8], mut check: impl FnMut(&[u8])) {
 
 #[test]
 fn the_documentation_shows_every_vector() {
-    for format in ["mpu", "mavlink"] {
+    for format in ["mpu", "mavlink", "msp", "vectornav", "mip"] {
         let path = format!("{}/../docs/wire/{format}.md", env!("CARGO_MANIFEST_DIR"));
         let page = std::fs::read_to_string(&path).unwrap();
         for vector in vectors(format) {

@@ -152,7 +152,9 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
                 others.push((format!("layout = \"{name}\""), self.bytes(here, options)));
             }
         }
-        for protocol in Protocol::ALL.into_iter().filter(|protocol| *protocol != here) {
+        // Packets that leave samples out are no way out.
+        let carries_all = |protocol: &Protocol| wire::warnings(*protocol, &self.plan.sensors).is_empty();
+        for protocol in Protocol::ALL.into_iter().filter(|it| *it != here && carries_all(it)) {
             others.push((protocol.name().into(), self.bytes(protocol, wire::Options::default())));
         }
         // What the output sends already is no other.

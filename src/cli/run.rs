@@ -103,6 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     refuse(arguments, &plan, &outputs)?;
     let plan = Arc::new(plan);
     let estimator = estimator(demonstration, &outputs);
+    let fed = outputs.iter().any(|output| output.to.target.is_some());
     let job = Job {
         plan: plan.clone(),
         end: arguments.span.unwrap_or(plan.duration),
@@ -126,7 +127,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
-    judge(&mut report, &limits, outcome.command)?;
+    judge(&mut report, &limits, outcome.command, fed)?;
     eprint!("{}", summary::run(&report, &outcome));
     if let Some(dir) = &arguments.out {
         super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
@@ -278,6 +279,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         made: 0,
         sent: 0,
         dropped: 0,
+        replaced: 0,
         queued: 0,
         late_us: Some(Late::default()),
         interval_us: Some(Interval::default()),
@@ -359,9 +361,16 @@ pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.links = outcome.links.clone();
 }
 
-/// Losses, broken limits, and a command that failed.
-pub(super) fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
-    let lost = report.sensors.iter().filter(|sensor| sensor.dropped > 0);
+/// Losses, broken limits, and a command that failed; `fed` says that a controller chose how many packets it gets.
+pub(super) fn judge(
+    report: &mut Report,
+    limits: &[Limit],
+    command: Option<i32>,
+    fed: bool,
+) -> Result<(), Refusal> {
+    // A controller that asks for fewer packets than there are samples loses none.
+    let excused = |sensor: &SensorReport| if fed { sensor.replaced } else { 0 };
+    let lost = report.sensors.iter().filter(|sensor| sensor.dropped > excused(sensor));
     let mut failed: Vec<_> =
         lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
     let broken =

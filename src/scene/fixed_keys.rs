@@ -86,6 +86,12 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "layout",
         "of `mpu`: \"separate\" or \"burst\" (default: burst where gyro and accel tick alike)",
     ),
+    ("output", "version", "of `mavlink`: 1 or 2 (default)"),
+    (
+        "output",
+        "messages",
+        "of `mavlink`, beside HIL_SENSOR: any of [\"HIL_STATE_QUATERNION\", \"ATTITUDE_QUATERNION\", \"HIGHRES_IMU\", \"RAW_IMU\", \"SCALED_IMU2\"], 50 Hz each",
+    ),
     (
         "output",
         "pace",

@@ -399,6 +399,14 @@ const REST: &[Case] = &[
         &[("6:10", "only `mpu` has layouts, not `csv`")],
     ),
     (
+        gyro!("[[output]]\nto = \"mpu@pty\"\nversion = 1\nmessages = []\n"),
+        &[("6:11", "is for `mavlink`, not for `mpu`"), ("7:12", "is for `mavlink`, not for `mpu`")],
+    ),
+    (
+        gyro!("[[output]]\nto = \"mavlink@pty\"\nversion = 3\nmessages = [\"RAW_IMU\", \"RAW_IMUS\"]\n"),
+        &[("6:11", "is 3; MAVLink has 1 and 2"), ("7:24", "did you mean `RAW_IMU`?")],
+    ),
+    (
         gyro!("[[output]]\nto = \"mpu@pty\"\npace = true\n"),
         &[("6:8", "`pace` needs a baud rate: write to = \"mpu@pty,115200\"")],
     ),

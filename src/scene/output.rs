@@ -5,7 +5,7 @@ use super::suggest;
 use super::target::{TARGETS, Target};
 use crate::link::Address;
 use crate::sensor::SensorPlan;
-use crate::wire::{self, Layout, Protocol};
+use crate::wire::{self, Extra, Extras, Layout, Protocol, Version};
 use std::fmt;
 use std::str::FromStr;
 
@@ -115,7 +115,10 @@ pub struct Output {
 impl Output {
     /// An output of the command line: nothing but its destination.
     pub fn to(to: Destination) -> Output {
-        let wire = wire::Options { layout: None, controller: to.target.map(|target| target.controller) };
+        let wire = wire::Options {
+            controller: to.target.map(|target| target.controller),
+            ..wire::Options::default()
+        };
         Output { to, wire, overload: Overload::default(), force: false, faults: Vec::new() }
     }
 }
@@ -144,17 +147,24 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let overload = Overload::from_name(section.word("overload", &Overload::NAMES, Overload::NAMES[0]));
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
+    let (version, extras) = mavlink(section);
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
     let to = section.text("to", None)?;
     let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
-    let wire = wire::Options { layout, controller: to.target.map(|target| target.controller) };
+    let controller = to.target.map(|target| target.controller);
+    let wire = wire::Options { layout, version, extras, controller };
+    for key in ["version", "messages"] {
+        if section.has(key) && to.protocol != Protocol::Mavlink {
+            section.mistake(key, format!("is for `mavlink`, not for `{}`", to.protocol.name()));
+        }
+    }
     if layout.is_some() && to.protocol != Protocol::Mpu {
         section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
     }
     if let Some(Err(why)) = sensors.map(|sensors| wire::check(to.protocol, &wire, sensors)) {
-        section.mistake("layout", why);
+        section.mistake(if extras == Extras::default() { "layout" } else { "messages" }, why);
     }
     match pace {
         Some(true) => paced(section, &to),
@@ -162,6 +172,30 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
         None => {}
     }
     Some(Output { to, wire, overload, force, faults: Vec::new() })
+}
+
+/// `version` and `messages`, which only `mavlink` has.
+fn mavlink(section: &Section<'_>) -> (Version, Extras) {
+    let version = match section.has("version").then(|| section.whole("version", 2)) {
+        Some(1) => Version::V1,
+        Some(2) | None => Version::V2,
+        Some(other) => {
+            section.mistake("version", format!("is {other}; MAVLink has 1 and 2 (default)"));
+            Version::V2
+        }
+    };
+    let mut extras = Extras::default();
+    for (name, place) in if section.has("messages") { section.texts("messages") } else { Vec::new() } {
+        match Extra::from_name(&name) {
+            Some(extra) => extras = extras.with(extra),
+            None => {
+                let names = Extra::ALL.map(Extra::name);
+                let near = suggest::did_you_mean(&name, names);
+                section.note(&place, format!("`{name}` is none of {}{near}", names.join(", ")));
+            }
+        }
+    }
+    (version, extras)
 }
 
 /// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.

@@ -31,7 +31,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub static TARGETS: [Target; 2] = [
+pub static TARGETS: [Target; 4] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, stamped on arrival",
@@ -58,6 +58,33 @@ pub static TARGETS: [Target; 2] = [
         settings: &[],
         asks: "HIL_ACTUATOR_CONTROLS, one for each HIL_SENSOR",
     },
+    Target {
+        name: "ardupilot",
+        about: "ArduPilot, whose driver for an external AHRS takes us for a VN-100: start us before its boot",
+        protocol: Protocol::Vectornav,
+        controller: Controller::Ardupilot,
+        link: None,
+        baud: Some(115_200),
+        rest: SimTime(5 * NANOS),
+        most_hz: None,
+        scene: "level-then-turn",
+        // As many as its default baud rate carries; it asks for its own number of packets.
+        settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
+        asks: "nothing: it sets us up, at the rate that EAHRS_RATE says",
+    },
+    Target {
+        name: "inav",
+        about: "INAV with its HITL simulator message over MSP",
+        protocol: Protocol::Msp,
+        controller: Controller::Inav,
+        link: None,
+        baud: Some(115_200),
+        rest: SimTime(20 * NANOS),
+        most_hz: Some(100),
+        scene: "level-then-turn",
+        settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
+        asks: "its variant and MSP_ATTITUDE until it answers; then each simulator message is answered with its attitude",
+    },
 ];
 
 impl Target {
@@ -76,7 +103,7 @@ impl Target {
             SimTime::ZERO => "held still until its estimator is ready".into(),
             rest => format!("held still for {} s, and until its estimator is ready", rest.0 / NANOS),
         });
-        let set = |setting: &&str| format!(" --set {setting}");
+        let set = |setting: &&str| format!(" --set '{setting}'");
         let settings: String = self.settings.iter().map(set).collect();
         lines.push(format!("scene {}{settings} unless another is named", self.scene));
         lines.push(format!("asked for {}", self.asks));

@@ -6,7 +6,7 @@ use crate::earth;
 use crate::geometry::{Body, Nav, Vector, exp};
 use crate::sensor::{Mount, Sampling, SensorKind, white_noise};
 use crate::time::{NANOS, Rate};
-use crate::wire::{Layout, Protocol};
+use crate::wire::{Extra, Layout, Protocol, Version};
 use glam::DVec3;
 
 /// The example of the documentation, every key of it.
@@ -457,6 +457,19 @@ fn outputs_and_limits_are_handed_on() {
     assert_eq!(plan.outputs.iter().map(|output| output.to.protocol).collect::<Vec<_>>(), protocols);
     assert_eq!(plan.outputs[0].wire.layout, Some(Layout::Burst));
     assert_eq!(plan.outputs[1].to.to_string(), "mavlink@udpout:127.0.0.1:14550");
+}
+
+#[test]
+fn an_output_of_mavlink_has_a_version_and_messages_on_request() {
+    let wire =
+        |keys: &str| plan(&format!("{SHORT}[[output]]\nto = \"mavlink@pty\"\n{keys}")).outputs.remove(0).wire;
+    let asked = wire("version = 1\nmessages = [\"SCALED_IMU2\", \"HIL_STATE_QUATERNION\"]\n");
+    assert_eq!(asked.version, Version::V1);
+    assert_eq!(
+        asked.extras.iter().map(Extra::name).collect::<Vec<_>>(),
+        ["HIL_STATE_QUATERNION", "SCALED_IMU2"]
+    );
+    assert_eq!(wire("version = 2\nmessages = []\n"), wire(""), "as by default");
 }
 
 #[test]

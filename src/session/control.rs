@@ -179,6 +179,7 @@ impl Run {
             here?;
             return Ok(run.never_started(names));
         }
+        run.compare_rates(on);
         let producer = match (producer, ring) {
             (None, Some(ring)) => run.start_producer(ring),
             (producer, _) => producer.unwrap_or_else(|| unreachable!("the ring went to a producer")),
@@ -363,6 +364,7 @@ type Paced = (
 
 #[cfg(test)]
 mod tests {
+    use super::super::Judging;
     use super::*;
     use crate::scene::{Output, Plan};
     use std::fs::OpenOptions;

@@ -87,6 +87,22 @@ impl Run {
         }
     }
 
+    /// Tells of a controller that asks for more than the scene has.
+    pub(super) fn compare_rates(&self, on: &mut dyn FnMut(Event<'_>)) {
+        let Some(fastest) =
+            self.job.plan.sensors.iter().max_by(|a, b| a.rate.as_hz().total_cmp(&b.rate.as_hz()))
+        else {
+            return;
+        };
+        let asked = self.talk.borrow().peers().into_iter().filter_map(|peer| peer.rate);
+        for rate in asked.filter(|rate| rate.as_hz() > fastest.rate.as_hz()) {
+            on(Event::Notice(format!(
+                "the controller asks for {rate}, and the scene's fastest sensor, {}, has {}: --set {}.rate='{rate}' gives it all",
+                fastest.kind, fastest.rate, fastest.kind
+            )));
+        }
+    }
+
     /// What is due by itself, and what the other sides gave notice of.
     pub(super) fn tick(&mut self, on: &mut dyn FnMut(Event<'_>)) {
         self.talk.borrow_mut().tick(self.clock.now());

@@ -5,7 +5,10 @@
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
 mod frames;
+mod mavlink;
 mod mpu;
+mod msp;
+mod vectornav;
 
 pub use frames::frames;
 
@@ -93,10 +96,13 @@ pub trait Dialogue: Send {
 }
 
 /// The conversation of a protocol, as `controller` wants it led; `None` where the other side says nothing.
-pub fn dialogue(protocol: Protocol, _controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
+pub fn dialogue(protocol: Protocol, controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
     match protocol {
         Protocol::Mpu => Some(Box::new(mpu::Answers::new())),
-        Protocol::Mavlink | Protocol::Csv | Protocol::Jsonl => None,
+        Protocol::Msp => Some(Box::new(msp::Inav::new(controller))),
+        Protocol::Vectornav => Some(Box::new(vectornav::Unit::new(controller))),
+        Protocol::Mip | Protocol::Csv | Protocol::Jsonl => None,
+        Protocol::Mavlink => Some(Box::new(mavlink::Mavlink::new(controller))),
     }
 }
 

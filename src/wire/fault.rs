@@ -114,6 +114,11 @@ pub(super) fn inside(protocol: Protocol, len: usize) -> (Range<usize>, Option<u8
         Protocol::Mpu => (0..len.saturating_sub(1), Some(0)),
         // Magic, length, flags, sequence, sender and message: without them the length of the packet is lost.
         Protocol::Mavlink => (10.min(len)..len, None),
+        // What says how long a packet is: `$X`, direction, flags, command and size; the sync byte with up to five of
+        // groups and fields; two sync bytes, the descriptor set and the length.
+        Protocol::Msp => (8.min(len)..len, None),
+        Protocol::Vectornav => (6.min(len)..len, None),
+        Protocol::Mip => (4.min(len)..len, None),
         Protocol::Csv | Protocol::Jsonl => (0..len.saturating_sub(1), Some(b'\n')),
     }
 }

@@ -1,21 +1,27 @@
-//! `mavlink`: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second.
+//! `mavlink`: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second, and what is asked for besides.
 //!
+//! It speaks as a component of the system that the conversation has found, or of system 1.
 //! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
 //! before; the temperature of the first sensor that has one in the scene. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
+
+mod extra;
+
+pub use extra::{Extra, Extras};
 
 use super::{Encoder, EverySecond, Newest, Now, Packet, Setup};
 use crate::sensor::{ByKind, SensorKind};
 use crate::time::SimTime;
+use extra::Sender;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
 
-/// The simulator's own ids: the vehicle's system, a component of its own.
-const SYSTEM: u8 = 1;
-const COMPONENT: u8 = 51;
+/// The simulator's own ids: the vehicle's system where nothing is known of it, a component of its own.
+pub(super) const SYSTEM: u8 = 1;
+pub(super) const COMPONENT: u8 = 51;
 
 /// MAV_AUTOPILOT_INVALID: this is no autopilot.
-const NO_AUTOPILOT: u8 = 8;
+pub(super) const NO_AUTOPILOT: u8 = 8;
 /// MAV_MODE_FLAG_HIL_ENABLED.
-const HARDWARE_IN_THE_LOOP: u8 = 0x20;
+pub(super) const HARDWARE_IN_THE_LOOP: u8 = 0x20;
 /// MAV_STATE_ACTIVE.
 const ACTIVE: u8 = 4;
 /// The `mavlink_version` of every dialect in use.
@@ -26,9 +32,14 @@ pub(super) const MICROTESLA_A_GAUSS: f64 = 100.0;
 pub(super) const MASKS: [u32; 3] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG];
 
 pub(super) struct Mavlink {
+    version: Version,
+    system: u8,
     seq: u8,
     seconds: EverySecond,
+    extras: Vec<Sender>,
     newest: Newest,
+    /// Of gyro, accel and mag: the unit of one count.
+    counts: [f64; 3],
     /// At whose ticks messages go out: the gyro's, or without one the first sensor's.
     carrier: Option<SensorKind>,
     unix_us_at_start: Option<u64>,
@@ -39,8 +50,12 @@ pub(super) struct Mavlink {
 impl Mavlink {
     pub(super) fn new(setup: &Setup<'_>) -> Mavlink {
         Mavlink {
+            version: setup.options.version,
+            system: setup.peer.system.unwrap_or(SYSTEM),
             seq: 0,
             seconds: EverySecond::default(),
+            extras: setup.options.extras.iter().map(Sender::new).collect(),
+            counts: super::mpu::counts(setup.sensors),
             newest: Newest::default(),
             carrier: setup.sensors.first().map(|sensor| sensor.kind),
             unix_us_at_start: setup.day.map(|day| day.unix_seconds() as u64 * 1_000_000),
@@ -53,7 +68,8 @@ impl Mavlink {
     }
 
     fn bytes<'b>(&mut self, message: &Message, buffer: &'b mut [u8; mavlink::MAX_LEN]) -> &'b [u8] {
-        let header = Header { version: Version::V2, seq: self.seq, system: SYSTEM, component: COMPONENT };
+        let header =
+            Header { version: self.version, seq: self.seq, system: self.system, component: COMPONENT };
         self.seq = self.seq.wrapping_add(1);
         // MAX_LEN holds every message.
         let len = mavlink::encode(&header, message, buffer).unwrap_or(0);
@@ -81,13 +97,15 @@ impl Mavlink {
         }
     }
 
+    fn readings(&self) -> Readings<'_> {
+        Readings { newest: &self.newest, counts: self.counts, warm: self.warm }
+    }
+
     fn hil_sensor(&self, t: SimTime) -> Message {
-        let value = |kind: SensorKind, unit: f64| {
-            self.newest.values[kind as usize]
-                .map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
-        };
+        let readings = self.readings();
+        let value = |kind, unit| readings.over(kind, unit).map(|x| x as f32);
         let fresh = (0..3).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
-        let temperature = self.warm.and_then(|kind| self.newest.values[kind as usize]);
+        let temperature = readings.temperature();
         let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
         Message::HilSensor(hil_sensor::Repr {
             time_usec: t.0 as u64 / 1000,
@@ -97,10 +115,43 @@ impl Mavlink {
             abs_pressure: 0.0,
             diff_pressure: 0.0,
             pressure_alt: 0.0,
-            temperature: temperature.map_or(0.0, |reading| reading.temperature as f32),
+            temperature: temperature.unwrap_or(0.0) as f32,
             fields_updated: fresh.fold(0, |mask, bits| mask | bits),
             id: 0,
         })
+    }
+
+    fn extras(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        let ticked = now.readings.iter().fold(0, |kinds, reading| kinds | 1 << reading.kind as u8);
+        let mut extras = std::mem::take(&mut self.extras);
+        for sender in &mut extras {
+            if sender.is_due(now.t, ticked) {
+                let message = sender.message(now.truth, &self.readings());
+                let mut buffer = [0; mavlink::MAX_LEN];
+                out.push(Packet::new(now.t, 0, self.bytes(&message, &mut buffer)));
+            }
+        }
+        self.extras = extras;
+    }
+}
+
+/// The newest reading of each sensor, for messages.
+struct Readings<'a> {
+    newest: &'a Newest,
+    counts: [f64; 3],
+    warm: Option<SensorKind>,
+}
+
+impl Readings<'_> {
+    /// A reading in this unit; 0 before the first.
+    fn over(&self, kind: SensorKind, unit: f64) -> [f64; 3] {
+        self.newest.values[kind as usize]
+            .map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| x / unit))
+    }
+
+    /// °C, where the scene gives one.
+    fn temperature(&self) -> Option<f64> {
+        self.newest.values[self.warm? as usize].map(|reading| reading.temperature)
     }
 }
 
@@ -117,6 +168,7 @@ impl Encoder for Mavlink {
             let bytes = self.bytes(&message, &mut buffer);
             out.push(self.newest.packet(t, 0b111, bytes));
         }
+        self.extras(now, out);
     }
 
     fn waiting(&self) -> ByKind<u64> {

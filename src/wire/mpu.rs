@@ -34,10 +34,8 @@ impl Mpu {
         let [gyro, accel, mag] = SensorKind::ALL.map(plan);
         let is_60x0 = [gyro, accel].into_iter().flatten().any(|sensor| sensor.part == Some("MPU-6050"));
         let chip = if is_60x0 { Chip::Mpu60x0 } else { Chip::Mpu9250 };
-        let dps = 1f64.to_radians();
-        let (gyro_config, gyro_count) = scale(gyro, |config| dps / registers::gyro_lsb_per_dps(config));
-        let (accel_config, accel_count) =
-            scale(accel, |config| STANDARD_GRAVITY / registers::accel_lsb_per_g(config));
+        let (gyro_config, gyro_count) = gyro_scale(gyro);
+        let (accel_config, accel_count) = accel_scale(accel);
         let mount =
             |sensor: Option<&SensorPlan>| sensor.and_then(|sensor| sensor.mount).unwrap_or_else(Mount::flu);
         let fastest =
@@ -145,6 +143,21 @@ impl Encoder for Mpu {
     fn waiting(&self) -> ByKind<u64> {
         self.newest.waiting()
     }
+}
+
+/// What one count of gyro, accel and mag is: rad/s, m/s², µT.
+pub(super) fn counts(sensors: &[SensorPlan]) -> [f64; 3] {
+    let plan = |kind| sensors.iter().find(|sensor| sensor.kind == kind);
+    let mag = registers::mag_ut_per_lsb(ASA, true);
+    [gyro_scale(plan(SensorKind::Gyro)).1, accel_scale(plan(SensorKind::Accel)).1, mag]
+}
+
+fn gyro_scale(gyro: Option<&SensorPlan>) -> (u8, f64) {
+    scale(gyro, |config| 1f64.to_radians() / registers::gyro_lsb_per_dps(config))
+}
+
+fn accel_scale(accel: Option<&SensorPlan>) -> (u8, f64) {
+    scale(accel, |config| STANDARD_GRAVITY / registers::accel_lsb_per_g(config))
 }
 
 /// A nominal full scale is up to this much above what 16 bits hold: 1000 °/s at 32.8 LSB/(°/s) is 32 800 counts.

@@ -4,8 +4,11 @@
 //! panics on any bytes, memory stays bounded, and damage costs at most itself.
 
 mod mavlink;
+mod mip;
 mod mpu;
+mod msp;
 mod text;
+mod vectornav;
 
 use super::Protocol;
 use crate::geometry::{Axes, Body, Vector};
@@ -22,11 +25,12 @@ pub struct Sample {
     pub kind: SensorKind,
     /// Which of several sensors of that kind on the link.
     pub source: Source,
-    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text: ns; some MAVLink
-    /// messages: ms). A clock that wraps goes on counting here.
+    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text, `vectornav`: ns; some
+    /// MAVLink messages: ms). A clock that wraps goes on counting here.
     pub t: Option<SimTime>,
     /// The reading in body axes, rad/s, m/s² or µT; `None` where the packet does not say what its counts mean
-    /// (`mpu` before its first config packet, raw messages) or that they mean nothing (an overflow).
+    /// (`mpu` before its first config packet, raw messages, the field in `msp`) or that they mean nothing (an
+    /// overflow).
     pub value: Option<Vector<Body>>,
 }
 
@@ -62,8 +66,9 @@ impl fmt::Display for Source {
 pub fn greeting(protocol: Protocol, seq: u8) -> Vec<u8> {
     match protocol {
         Protocol::Mavlink => mavlink::ground_station(seq),
-        Protocol::Mpu => vec![0],
-        Protocol::Csv | Protocol::Jsonl => b"\n".to_vec(),
+        Protocol::Mpu | Protocol::Mip => vec![0],
+        Protocol::Msp => msp::question(),
+        Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => b"\n".to_vec(),
     }
 }
 
@@ -95,7 +100,7 @@ pub struct Counts {
     /// 1 if the stream began in the middle of a packet, which is no damage.
     pub joined_midway: u64,
     /// Packets missing by the sequence number, damaged ones included: the number counts modulo 256 for each sender,
-    /// so a longer gap counts what is left of it after whole turns. 0 for text, which has no number.
+    /// so a longer gap counts what is left of it after whole turns. 0 for protocols without a number.
     pub lost: u64,
     /// Packets whose number came twice in a row.
     pub duplicates: u64,
@@ -144,6 +149,9 @@ pub struct Samples {
 enum Reader {
     Mpu(Box<mpu::Reader>),
     Mavlink(Box<mavlink::Reader>),
+    Msp(Box<msp::Reader>),
+    Vectornav(Box<vectornav::Reader>),
+    Mip(Box<mip::Reader>),
     Text(text::Reader),
 }
 
@@ -158,10 +166,13 @@ impl Samples {
         let reader = match protocol {
             Protocol::Mpu => Reader::Mpu(Box::new(mpu::Reader::new(assumed.mounts))),
             Protocol::Mavlink => Reader::Mavlink(Box::default()),
+            Protocol::Msp => Reader::Msp(Box::default()),
+            Protocol::Vectornav => Reader::Vectornav(Box::default()),
+            Protocol::Mip => Reader::Mip(Box::default()),
             Protocol::Csv => Reader::Text(text::Reader::csv(assumed.axes)),
             Protocol::Jsonl => Reader::Text(text::Reader::jsonl(assumed.axes)),
         };
-        let numbered = !matches!(reader, Reader::Text(_));
+        let numbered = matches!(reader, Reader::Mpu(_) | Reader::Mavlink(_));
         Samples { counts: Counts { numbered, ..Counts::default() }, reader }
     }
 
@@ -171,6 +182,9 @@ impl Samples {
         match &mut self.reader {
             Reader::Mpu(reader) => reader.feed(bytes, &mut self.counts, &mut each),
             Reader::Mavlink(reader) => reader.feed(bytes, &mut self.counts, &mut each),
+            Reader::Msp(reader) => reader.feed(bytes, &mut self.counts, &mut each),
+            Reader::Vectornav(reader) => reader.feed(bytes, &mut self.counts, &mut each),
+            Reader::Mip(reader) => reader.feed(bytes, &mut self.counts, &mut each),
             Reader::Text(reader) => reader.feed(bytes, &mut self.counts, &mut each),
         }
     }
@@ -181,6 +195,9 @@ impl Samples {
             // A packet ends with its zero.
             Reader::Mpu(_) => {}
             Reader::Mavlink(reader) => reader.finish(&mut self.counts, &mut each),
+            Reader::Msp(reader) => reader.finish(&mut self.counts, &mut each),
+            Reader::Vectornav(reader) => reader.finish(&mut self.counts, &mut each),
+            Reader::Mip(reader) => reader.finish(&mut self.counts, &mut each),
             Reader::Text(reader) => reader.finish(&mut self.counts, &mut each),
         }
     }

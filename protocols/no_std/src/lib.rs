@@ -10,15 +10,20 @@ use core::panic::PanicInfo;
 
 use ratetable_protocols::mavlink::{self, Header, Message, Version, system_time};
 use ratetable_protocols::mpu::{self, Packet, gyro};
+use ratetable_protocols::{mip, msp, vectornav};
 
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     loop {}
 }
 
-/// Writes a packet of each format and reads it back: 2 if both came back.
+/// Writes a packet of each format and reads it back: 5 if all came back.
 pub extern "C" fn round_trips(count: u32) -> u32 {
-    mpu_round_trip(count) + mavlink_round_trip(count)
+    mpu_round_trip(count)
+        + mavlink_round_trip(count)
+        + msp_round_trip(count)
+        + vectornav_round_trip(count)
+        + mip_round_trip(count)
 }
 
 /// Keeps the function in the library without a name of the system's own.
@@ -55,6 +60,39 @@ fn mavlink_round_trip(count: u32) -> u32 {
         mavlink::Decoder::new().feed(&bytes[..len], |received| {
             back += u32::from(received.is_ok_and(|received| received.message == Some(message)));
         });
+    }
+    back
+}
+
+fn msp_round_trip(count: u32) -> u32 {
+    let mut bytes = [0; msp::MAX_LEN];
+    let message = msp::Message::question(count as u16);
+    let mut back = 0;
+    if let Ok(len) = msp::encode(&message, &mut bytes) {
+        msp::Decoder::new().feed(&bytes[..len], |received| {
+            back += u32::from(received.is_ok_and(|received| received.message == Some(message)));
+        });
+    }
+    back
+}
+
+fn vectornav_round_trip(count: u32) -> u32 {
+    let mut bytes = [0; vectornav::MAX_LEN];
+    let imu = vectornav::imu::Repr { time_ns: u64::from(count), ..Default::default() };
+    let packet = vectornav::Packet::Imu(imu);
+    let mut back = 0;
+    if let Ok(len) = vectornav::encode(&packet, &mut bytes) {
+        vectornav::Decoder::new().feed(&bytes[..len], |received| back += u32::from(received == Ok(packet)));
+    }
+    back
+}
+
+fn mip_round_trip(count: u32) -> u32 {
+    let mut bytes = [0; mip::MAX_LEN];
+    let imu = mip::imu::Repr { pressure: Some(count as f32), ..Default::default() };
+    let mut back = 0;
+    if let Ok(len) = mip::encode(&imu, &mut bytes) {
+        mip::Decoder::new().feed(&bytes[..len], |received| back += u32::from(received == Ok(imu)));
     }
     back
 }

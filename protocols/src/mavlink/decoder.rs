@@ -57,6 +57,12 @@ impl Decoder {
     /// Damage is reported once, however many bytes it takes to be in step again:
     /// [`Error::Checksum`], or [`Error::Malformed`] where no packet starts.
     pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<Received, Error>)) {
+        self.feed_whole(bytes, |received| on(received.map(|(received, _)| received)));
+    }
+
+    /// The same, with each packet's own bytes, signature included: for who passes packets on. An
+    /// unknown message is passed as it came, unchecked.
+    pub fn feed_whole(&mut self, bytes: &[u8], mut on: impl FnMut(Result<(Received, &[u8]), Error>)) {
         for &byte in bytes {
             self.held[self.len] = byte;
             self.len += 1;
@@ -66,11 +72,16 @@ impl Decoder {
 
     /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
     pub fn finish(&mut self, mut on: impl FnMut(Result<Received, Error>)) {
+        self.finish_whole(|received| on(received.map(|(received, _)| received)));
+    }
+
+    /// The same, with each packet's own bytes.
+    pub fn finish_whole(&mut self, mut on: impl FnMut(Result<(Received, &[u8]), Error>)) {
         self.scan(true, &mut on);
     }
 
     /// Takes all that can be judged from the front of what is held.
-    fn scan(&mut self, at_end: bool, on: &mut impl FnMut(Result<Received, Error>)) {
+    fn scan(&mut self, at_end: bool, on: &mut impl FnMut(Result<(Received, &[u8]), Error>)) {
         while self.len > 0 {
             match self.judge(at_end) {
                 Verdict::Wait => return,
@@ -82,7 +93,7 @@ impl Decoder {
                     self.drop_false_start();
                 }
                 Verdict::Packet(received, len) => {
-                    on(Ok(received));
+                    on(Ok((received, &self.held[..len])));
                     self.in_step = true;
                     self.drop_front(len);
                 }
@@ -243,6 +254,30 @@ mod tests {
         decoder.feed(&UNKNOWN, &mut on);
         decoder.finish(&mut on);
         assert_eq!(ids, [0xffff, heartbeat::ID, system_time::ID, 0xffff]);
+    }
+
+    #[test]
+    fn every_packet_comes_with_its_own_bytes_known_or_not() {
+        for version in [Version::V1, Version::V2] {
+            let mut bytes = [0; 2 * MAX_LEN];
+            let (first, end) = two_packets(version, &mut bytes);
+            let mut signed = [0; 2 * MAX_LEN];
+            signed[..UNKNOWN.len()].copy_from_slice(&UNKNOWN);
+            signed[2] = SIGNED;
+            let expected =
+                [&bytes[..first], &bytes[first..end], &UNKNOWN, &signed[..UNKNOWN.len() + SIGNATURE_LEN]];
+            let mut count = 0;
+            let mut on = |received: Result<(Received, &[u8]), Error>| {
+                assert_eq!(received.unwrap().1, expected[count]);
+                count += 1;
+            };
+            let mut decoder = Decoder::new();
+            for packet in expected {
+                packet.chunks(5).for_each(|piece| decoder.feed_whole(piece, &mut on));
+            }
+            decoder.finish_whole(&mut on);
+            assert_eq!(count, expected.len());
+        }
     }
 
     #[test]

@@ -29,15 +29,27 @@ use crate::error::Error;
 
 pub mod attitude;
 pub mod attitude_quaternion;
+pub mod command_ack;
+pub mod command_long;
 mod decoder;
 pub mod heartbeat;
 pub mod highres_imu;
+pub mod hil_actuator_controls;
+pub mod hil_gps;
 pub mod hil_sensor;
+pub mod hil_state_quaternion;
+mod param_id;
+pub mod param_request_read;
+pub mod param_value;
 pub mod raw_imu;
 pub mod scaled_imu;
+pub mod scaled_imu2;
+pub mod scaled_imu3;
 pub mod system_time;
+pub mod timesync;
 
 pub use decoder::Decoder;
+pub use param_id::{PARAM_ID_LEN, param_id, param_name};
 
 static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_MCRF4XX);
 
@@ -184,6 +196,10 @@ messages! {
     Heartbeat(heartbeat),
     /// Date and time since boot.
     SystemTime(system_time),
+    /// Asks for a parameter.
+    ParamRequestRead(param_request_read),
+    /// A parameter.
+    ParamValue(param_value),
     /// An autopilot's own sensor in thousandths of units.
     ScaledImu(scaled_imu),
     /// An autopilot's own sensor in counts.
@@ -192,10 +208,26 @@ messages! {
     Attitude(attitude),
     /// Attitude as a quaternion.
     AttitudeQuaternion(attitude_quaternion),
+    /// Asks somebody to do something.
+    CommandLong(command_long),
+    /// What became of a command.
+    CommandAck(command_ack),
+    /// What an autopilot tells a simulated vehicle to do.
+    HilActuatorControls(hil_actuator_controls),
     /// An autopilot's own sensors.
     HighresImu(highres_imu),
     /// The readings of an emulated vehicle.
     HilSensor(hil_sensor),
+    /// Compares two clocks.
+    Timesync(timesync),
+    /// The position fix of an emulated vehicle.
+    HilGps(hil_gps),
+    /// The true state of an emulated vehicle.
+    HilStateQuaternion(hil_state_quaternion),
+    /// An autopilot's second sensor in thousandths of units.
+    ScaledImu2(scaled_imu2),
+    /// An autopilot's third sensor in thousandths of units.
+    ScaledImu3(scaled_imu3),
 }
 
 /// The checksum of the bytes after the first one of a packet.

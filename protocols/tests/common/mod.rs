@@ -3,6 +3,7 @@
 
 use ratetable_protocols::mavlink::{self, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
+use ratetable_protocols::{mip, msp, vectornav};
 use serde_json::Value;
 
 /// One golden packet: its JSON and its bytes.
@@ -21,7 +22,7 @@ impl Vector {
     }
 }
 
-/// The vectors of `mpu` or `mavlink`.
+/// The vectors of a format.
 pub fn vectors(format: &str) -> Vec<Vector> {
     let path = format!("{}/vectors/{format}.json", env!("CARGO_MANIFEST_DIR"));
     let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
@@ -164,6 +165,175 @@ pub fn mavlink_message(json: &Value) -> Message {
             mag: ints(&f["mag"]),
             temperature: int(&f["temperature"]),
         }),
+        "param_request_read" => Message::ParamRequestRead(mavlink::param_request_read::Repr {
+            param_index: int(&f["param_index"]),
+            target_system: int(&f["target_system"]),
+            target_component: int(&f["target_component"]),
+            param_id: mavlink::param_id(f["param_id"].as_str().unwrap()),
+        }),
+        "param_value" => Message::ParamValue(mavlink::param_value::Repr {
+            param_value: f32::from_bits(int(&f["param_value_bits"])),
+            param_count: int(&f["param_count"]),
+            param_index: int(&f["param_index"]),
+            param_id: mavlink::param_id(f["param_id"].as_str().unwrap()),
+            param_type: int(&f["param_type"]),
+        }),
+        "command_long" => Message::CommandLong(mavlink::command_long::Repr {
+            params: floats(&f["params"]),
+            command: int(&f["command"]),
+            target_system: int(&f["target_system"]),
+            target_component: int(&f["target_component"]),
+            confirmation: int(&f["confirmation"]),
+        }),
+        "command_ack" => Message::CommandAck(mavlink::command_ack::Repr {
+            command: int(&f["command"]),
+            result: int(&f["result"]),
+            progress: int(&f["progress"]),
+            result_param2: int(&f["result_param2"]),
+            target_system: int(&f["target_system"]),
+            target_component: int(&f["target_component"]),
+        }),
+        "hil_actuator_controls" => Message::HilActuatorControls(mavlink::hil_actuator_controls::Repr {
+            time_usec: int(&f["time_usec"]),
+            flags: int(&f["flags"]),
+            controls: floats(&f["controls"]),
+            mode: int(&f["mode"]),
+        }),
+        "timesync" => Message::Timesync(mavlink::timesync::Repr { tc1: int(&f["tc1"]), ts1: int(&f["ts1"]) }),
+        "hil_gps" => Message::HilGps(mavlink::hil_gps::Repr {
+            time_usec: int(&f["time_usec"]),
+            lat: int(&f["lat"]),
+            lon: int(&f["lon"]),
+            alt: int(&f["alt"]),
+            eph: int(&f["eph"]),
+            epv: int(&f["epv"]),
+            vel: int(&f["vel"]),
+            velocity: ints(&f["velocity"]),
+            cog: int(&f["cog"]),
+            fix_type: int(&f["fix_type"]),
+            satellites_visible: int(&f["satellites_visible"]),
+            id: int(&f["id"]),
+            yaw: int(&f["yaw"]),
+        }),
+        "hil_state_quaternion" => Message::HilStateQuaternion(mavlink::hil_state_quaternion::Repr {
+            time_usec: int(&f["time_usec"]),
+            q: floats(&f["q"]),
+            angular_rate: floats(&f["angular_rate"]),
+            lat: int(&f["lat"]),
+            lon: int(&f["lon"]),
+            alt: int(&f["alt"]),
+            velocity: ints(&f["velocity"]),
+            ind_airspeed: int(&f["ind_airspeed"]),
+            true_airspeed: int(&f["true_airspeed"]),
+            accel: ints(&f["accel"]),
+        }),
+        "scaled_imu2" => Message::ScaledImu2(mavlink::scaled_imu2::Repr {
+            time_boot_ms: int(&f["time_boot_ms"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            mag: ints(&f["mag"]),
+            temperature: int(&f["temperature"]),
+        }),
+        "scaled_imu3" => Message::ScaledImu3(mavlink::scaled_imu3::Repr {
+            time_boot_ms: int(&f["time_boot_ms"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            mag: ints(&f["mag"]),
+            temperature: int(&f["temperature"]),
+        }),
         other => panic!("no message {other}"),
+    }
+}
+
+/// The `msp` message that a vector describes.
+pub fn msp_message(json: &Value) -> msp::Message {
+    let f = &json["fields"];
+    match json["message"].as_str().unwrap() {
+        "empty" => msp::Message::Empty { direction: msp_direction(json), command: int(&json["command"]) },
+        "simulator" => msp::Message::Simulator(msp::simulator::Repr {
+            version: int(&f["version"]),
+            flags: int(&f["flags"]),
+            fix: int(&f["fix"]),
+            satellites: int(&f["satellites"]),
+            latitude: int(&f["latitude"]),
+            longitude: int(&f["longitude"]),
+            altitude: int(&f["altitude"]),
+            ground_speed: int(&f["ground_speed"]),
+            course: int(&f["course"]),
+            velocity: ints(&f["velocity"]),
+            attitude: ints(&f["attitude"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            pressure: int(&f["pressure"]),
+            mag: ints(&f["mag"]),
+        }),
+        "simulator_reply" => msp::Message::SimulatorReply(msp::simulator_reply::Repr {
+            outputs: ints(&f["outputs"]),
+            state: int(&f["state"]),
+            debug: int(&f["debug"]),
+            attitude: ints(&f["attitude"]),
+            display: ints(&f["display"]),
+        }),
+        "attitude" => msp::Message::Attitude(msp::attitude::Repr {
+            roll: int(&f["roll"]),
+            pitch: int(&f["pitch"]),
+            yaw: int(&f["yaw"]),
+        }),
+        "api_version" => msp::Message::ApiVersion(msp::api_version::Repr {
+            protocol: int(&f["protocol"]),
+            major: int(&f["major"]),
+            minor: int(&f["minor"]),
+        }),
+        "fc_variant" => msp::Message::FcVariant(msp::fc_variant::Repr { name: ints(&f["name"]) }),
+        other => panic!("no message {other}"),
+    }
+}
+
+/// Which way the frame of a vector goes.
+pub fn msp_direction(json: &Value) -> msp::Direction {
+    match json["direction"].as_str().unwrap() {
+        "request" => msp::Direction::Request,
+        "reply" => msp::Direction::Reply,
+        "refusal" => msp::Direction::Refusal,
+        other => panic!("no direction {other}"),
+    }
+}
+
+/// The `vectornav` packet that a vector describes.
+pub fn vectornav_packet(json: &Value) -> vectornav::Packet {
+    let f = &json["fields"];
+    match json["type"].as_str().unwrap() {
+        "imu" => vectornav::Packet::Imu(vectornav::imu::Repr {
+            time_ns: f["time_ns"].as_u64().unwrap(),
+            gyro: floats(&f["gyro"]),
+            accel: floats(&f["accel"]),
+            raw_accel: floats(&f["raw_accel"]),
+            raw_gyro: floats(&f["raw_gyro"]),
+            mag: floats(&f["mag"]),
+            temperature: float(&f["temperature"]),
+            pressure: float(&f["pressure"]),
+        }),
+        "ahrs" => vectornav::Packet::Ahrs(vectornav::ahrs::Repr {
+            time_ns: f["time_ns"].as_u64().unwrap(),
+            yaw_pitch_roll: floats(&f["yaw_pitch_roll"]),
+            xyzw: floats(&f["xyzw"]),
+            uncertainty: floats(&f["uncertainty"]),
+        }),
+        "line" => {
+            let text = f["text"].as_str().unwrap();
+            vectornav::Packet::Line(vectornav::line::Line::new(text).unwrap())
+        }
+        other => panic!("no packet type {other}"),
+    }
+}
+
+/// The `mip` packet that a vector describes: fields that it lacks are not sent.
+pub fn mip_packet(json: &Value) -> mip::imu::Repr {
+    let vector = |name: &str| json["fields"].get(name).map(floats);
+    mip::imu::Repr {
+        pressure: json["fields"].get("pressure").map(float),
+        mag: vector("mag"),
+        accel: vector("accel"),
+        gyro: vector("gyro"),
     }
 }

@@ -1,4 +1,4 @@
-//! `mavlink`, versions 1 and 2: HIL_SENSOR as simulators send it, HIGHRES_IMU, SCALED_IMU and RAW_IMU as autopilots
+//! `mavlink`, versions 1 and 2: HIL_SENSOR as simulators send it, HIGHRES_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 and RAW_IMU as autopilots
 //! send what their own sensors read; one sample for each sensor that a message says is new.
 
 use super::{Counts, Sample, Source};
@@ -9,7 +9,8 @@ use crate::time::SimTime;
 use crate::wire::mavlink::{MASKS, MICROTESLA_A_GAUSS};
 use glam::DVec3;
 use ratetable_protocols::mavlink::{
-    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu,
+    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, scaled_imu,
+    scaled_imu2, scaled_imu3,
 };
 use ratetable_protocols::{Error, Losses};
 use std::collections::BTreeMap;
@@ -111,10 +112,12 @@ impl Inertial {
                     Some(gauss),
                 )
             }
-            Message::ScaledImu(seen) => {
+            Message::ScaledImu(scaled_imu::Repr { time_boot_ms, accel, gyro, mag, .. })
+            | Message::ScaledImu2(scaled_imu2::Repr { time_boot_ms, accel, gyro, mag, .. })
+            | Message::ScaledImu3(scaled_imu3::Repr { time_boot_ms, accel, gyro, mag, .. }) => {
                 let milli = [1e-3, 1e-3 * STANDARD_GRAVITY, 1e-3 * MICROTESLA_A_GAUSS];
-                let ns = Some(i64::from(seen.time_boot_ms) * 1_000_000);
-                (0, ns, present(seen.mag), ints([seen.gyro, seen.accel, seen.mag]), Some(milli))
+                let ns = Some(i64::from(*time_boot_ms) * 1_000_000);
+                (0, ns, present(*mag), ints([*gyro, *accel, *mag]), Some(milli))
             }
             Message::RawImu(seen) => {
                 let ns = micros(seen.time_usec);

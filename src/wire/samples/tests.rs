@@ -3,10 +3,14 @@
 use super::*;
 use crate::scene::Plan;
 use crate::sensor::Reading;
+use crate::time::Rate;
+use crate::wire::controller_tests::TOGETHER;
 use crate::wire::tests::{NOISY, plan, play};
 use crate::wire::{Layout, Now, Packet, at_rest};
 use proptest::prelude::*;
-use ratetable_protocols::mavlink::{self, Header, Message, Version, highres_imu, raw_imu, scaled_imu};
+use ratetable_protocols::mavlink::{
+    self, Header, Message, Version, highres_imu, raw_imu, scaled_imu, scaled_imu2, scaled_imu3,
+};
 use std::sync::OnceLock;
 
 /// Sensors at rates that have nothing to do with one another, each axis and sensor with values of its own.
@@ -53,9 +57,13 @@ fn bytes(packets: &[Packet]) -> Vec<u8> {
 /// How far a value may be from the reading that was sent: half a count, the rounding of an `f32`, or nothing.
 fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
     let count = [1f64.to_radians() / 16.4, crate::earth::STANDARD_GRAVITY / 2048.0, 0.15][kind as usize];
+    let msp = [1f64.to_radians() / 16.0, 1e-3 * crate::earth::STANDARD_GRAVITY, 0.0][kind as usize];
     match protocol {
         Protocol::Mpu => 0.5 * count * (1.0 + 1e-9),
-        Protocol::Mavlink => 2.0 * reading.abs() * f64::from(f32::EPSILON),
+        Protocol::Msp => 0.5 * msp * (1.0 + 1e-9),
+        Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip => {
+            2.0 * reading.abs() * f64::from(f32::EPSILON)
+        }
         Protocol::Csv | Protocol::Jsonl => 0.0,
     }
 }
@@ -69,11 +77,18 @@ fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample
             return Some(format!("{} {kind} of {}", came.len(), sent.len()));
         }
         for ((t, reading), sample) in sent.into_iter().zip(came) {
-            let unit = if protocol == Protocol::Csv || protocol == Protocol::Jsonl { 1 } else { 1000 };
-            if sample.t != Some(SimTime(t.0 / unit * unit)) {
+            let unit = match protocol {
+                Protocol::Mpu | Protocol::Mavlink => Some(1000),
+                Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => Some(1),
+                Protocol::Msp | Protocol::Mip => None,
+            };
+            if sample.t != unit.map(|unit| SimTime(t.0 / unit * unit)) {
                 return Some(format!("{kind} at {:?}, sent for {t}", sample.t));
             }
             let expected = reading.value.v.to_array();
+            if (protocol, kind) == (Protocol::Msp, SensorKind::Mag) && sample.value.is_none() {
+                continue;
+            }
             let Some(value) = sample.value else { return Some(format!("{kind} at {t} without a value")) };
             let off = |(seen, sent): (f64, f64)| (seen - sent).abs() > tolerance(protocol, kind, sent);
             if value.v.to_array().into_iter().zip(expected).any(off) {
@@ -86,13 +101,18 @@ fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample
 
 #[test]
 fn every_sample_comes_back_with_its_time_and_value() {
-    let scenes = [NOISY, MIXED].map(String::from);
-    let turned = [NOISY, MIXED].map(|scene| format!("axes = \"enu-flu\"\n{scene}"));
+    let scenes = [NOISY, MIXED, TOGETHER].map(String::from);
+    let turned = [NOISY, MIXED, TOGETHER].map(|scene| format!("axes = \"enu-flu\"\n{scene}"));
     for plan in scenes.iter().chain(&turned).map(|text| plan(text)) {
         for protocol in Protocol::ALL {
             let (packets, readings) = play(&plan, protocol, None);
             // With MAVLink a sensor's sample leaves at the next tick of the gyro: compare where they tick together.
             if protocol == Protocol::Mavlink && plan.sensors[1].rate != plan.sensors[0].rate {
+                continue;
+            }
+            // These tell every sensor in every packet, at most 100 times a second: compare where all are new.
+            let tells_all = matches!(protocol, Protocol::Msp | Protocol::Vectornav | Protocol::Mip);
+            if tells_all && plan.sensors[2].rate != Rate::hz(100) {
                 continue;
             }
             let bytes = bytes(&packets);
@@ -110,7 +130,7 @@ fn every_sample_comes_back_with_its_time_and_value() {
 /// Negative control: a mistake in axes, sign or scale does not pass for a round trip.
 #[test]
 fn a_swapped_axis_is_noticed() {
-    let plan = plan(NOISY);
+    let plan = plan(TOGETHER);
     for protocol in Protocol::ALL {
         let (packets, readings) = play(&plan, protocol, None);
         let (samples, _) = read(Samples::new(protocol), &bytes(&packets), 4096);
@@ -122,7 +142,9 @@ fn a_swapped_axis_is_noticed() {
             |[x, y, z]| [1.01 * x, 1.01 * y, 1.01 * z],
         ];
         for change in changes {
-            for kind in SensorKind::ALL {
+            // The field in `msp` has no value to be wrong.
+            let has_value = |kind: &SensorKind| (protocol, *kind) != (Protocol::Msp, SensorKind::Mag);
+            for kind in SensorKind::ALL.into_iter().filter(has_value) {
                 let changed = |sample: &Sample| match sample.value {
                     Some(value) if sample.kind == kind => {
                         let [x, y, z] = change(value.v.to_array());
@@ -199,7 +221,12 @@ fn what_autopilots_send_of_their_own_sensors_is_read_in_our_units() {
     let (gyro, mag) = (Vector::new(0.25, 0.0, -0.125), Vector::new(25.0, 0.0, 50.0));
     let half_g = Vector::new(0.0, 0.5, -1.0) * crate::earth::STANDARD_GRAVITY;
     let all = highres_imu::GYRO | highres_imu::ACCEL | highres_imu::MAG;
+    let scaled_imu::Repr { time_boot_ms, accel, gyro: mrad, .. } = scaled([0; 3]);
+    let second = scaled_imu2::Repr { time_boot_ms, accel, gyro: mrad, mag: [0; 3], temperature: 0 };
+    let third = scaled_imu3::Repr { time_boot_ms, accel, gyro: mrad, mag: [250, 0, 500], temperature: 0 };
     for (sent, values) in [
+        (Message::ScaledImu2(second), [Some(gyro), Some(half_g)].to_vec()),
+        (Message::ScaledImu3(third), [Some(gyro), Some(half_g), Some(mag)].to_vec()),
         (Message::ScaledImu(scaled([250, 0, 500])), [Some(gyro), Some(half_g), Some(mag)].to_vec()),
         (Message::ScaledImu(scaled([0; 3])), [Some(gyro), Some(half_g)].to_vec()),
         (

@@ -1,0 +1,222 @@
+//! `mavlink`: an autopilot's heartbeat, its attitude and clock, and what of it a ground station would see.
+//!
+//! The first autopilot heard is the one: its system id is shared ([`Peer::system`]) and what others say of attitude
+//! is passed on and not taken for its own. Answers go out in the MAVLink version in which it speaks.
+//! PX4 has ways of its own, on its board ([`px4`]) and as a program in lockstep.
+
+mod asking;
+mod parameters;
+mod px4;
+mod steady;
+mod voice;
+
+use super::{Dialogue, Estimate, Peer, Said, Stage, Stamp};
+use crate::geometry::{Attitude, Euler};
+use crate::wire::Controller;
+use crate::wire::mavlink::{COMPONENT, NO_AUTOPILOT};
+use asking::Asking;
+use glam::DQuat;
+use px4::Px4;
+use ratetable_protocols::mavlink::{
+    Decoder, Header, Message, Received, attitude, attitude_quaternion, command_ack, heartbeat,
+    hil_actuator_controls, timesync,
+};
+use voice::Voice;
+
+/// MAV_TYPE_GCS: a ground station, which may name an autopilot's make but is none.
+const GROUND_STATION: u8 = 6;
+
+/// An autopilot that tells its attitude both ways tells the same estimate twice: the quaternion counts, and Euler
+/// angles only when none has come for so long, ns.
+const QUATERNION_GONE: i64 = 1_000_000_000;
+
+/// The conversation on one link.
+pub(super) struct Mavlink {
+    decoder: Decoder,
+    ear: Ear,
+}
+
+/// The autopilot at the other end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Autopilot {
+    system: u8,
+    component: u8,
+    /// `MAV_MODE_FLAG` of its newest heartbeat.
+    base_mode: u8,
+}
+
+/// What is waited for before the scene may start.
+enum Way {
+    /// Nothing.
+    Any,
+    /// PX4 on its board: its heartbeat, then its estimator.
+    Hitl(Box<Px4>),
+    /// PX4 as a program: that it answers samples.
+    Sitl { took: bool },
+}
+
+/// What becomes of messages.
+struct Ear {
+    voice: Voice,
+    autopilot: Option<Autopilot>,
+    asking: Asking,
+    quaternion_at: Option<i64>,
+    way: Way,
+    damaged: u64,
+}
+
+impl Mavlink {
+    pub(super) fn new(controller: Option<Controller>) -> Mavlink {
+        let way = match controller {
+            Some(Controller::Px4) => Way::Hitl(Box::default()),
+            Some(Controller::Px4Sitl) => Way::Sitl { took: false },
+            Some(Controller::Ardupilot | Controller::Inav) | None => Way::Any,
+        };
+        Mavlink {
+            decoder: Decoder::new(),
+            ear: Ear {
+                voice: Voice::default(),
+                autopilot: None,
+                asking: Asking::default(),
+                quaternion_at: None,
+                way,
+                damaged: 0,
+            },
+        }
+    }
+}
+
+impl Dialogue for Mavlink {
+    fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        let Mavlink { decoder, ear } = self;
+        decoder.feed_whole(bytes, |received| match received {
+            Ok((received, packet)) => ear.take(&received, packet, now, say),
+            Err(_) => ear.damaged += 1,
+        });
+    }
+
+    fn tick(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        let Ear { voice, autopilot, asking, way, .. } = &mut self.ear;
+        if let Way::Hitl(px4) = way {
+            px4.tick(now, autopilot.as_ref(), voice, say);
+        }
+        // The link to a simulator carries no attitude.
+        if let (Some(autopilot), Way::Any | Way::Hitl(_)) = (autopilot, way) {
+            asking.tick(now, autopilot, voice, say);
+        }
+    }
+
+    fn stage(&self) -> Stage {
+        match &self.ear.way {
+            Way::Any | Way::Sitl { took: true } => Stage::Ready,
+            Way::Sitl { took: false } => Stage::Still,
+            Way::Hitl(px4) => px4.stage(),
+        }
+    }
+
+    fn peer(&self) -> Peer {
+        Peer { system: self.ear.autopilot.map(|autopilot| autopilot.system), ..Peer::default() }
+    }
+
+    fn damaged(&self) -> u64 {
+        self.ear.damaged
+    }
+}
+
+impl Ear {
+    fn take(&mut self, received: &Received, packet: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        let Received { header, id, message } = *received;
+        if [COMPONENT, voice::COMPONENT].contains(&header.component) {
+            // Our own words, on a line that is looped back.
+            return;
+        }
+        if !is_hil(id) {
+            say(Said::Pass(packet));
+        }
+        let Some(message) = message else { return };
+        if let Message::Heartbeat(beat) = message {
+            return self.beat(&header, &beat, now);
+        }
+        if self.autopilot.is_some_and(|autopilot| autopilot.system != header.system) {
+            return;
+        }
+        match message {
+            Message::Timesync(timesync::Repr { tc1: 0, ts1 }) => {
+                self.voice.say(&Message::Timesync(timesync::Repr { tc1: now, ts1 }), say);
+            }
+            Message::AttitudeQuaternion(attitude_quaternion::Repr { time_boot_ms, q, .. }) => {
+                self.asking.hear(attitude_quaternion::ID, now);
+                self.quaternion_at = Some(now);
+                let [w, x, y, z] = q.map(f64::from);
+                self.estimate(time_boot_ms, DQuat::from_xyzw(x, y, z, w), now, say);
+            }
+            Message::Attitude(attitude::Repr { time_boot_ms, roll, pitch, yaw, .. }) => {
+                self.asking.hear(attitude::ID, now);
+                if self.quaternion_at.is_none_or(|at| now - at > QUATERNION_GONE) {
+                    let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::from);
+                    self.estimate(time_boot_ms, Euler { roll, pitch, yaw }.to_quat(), now, say);
+                }
+            }
+            Message::HilActuatorControls(controls) => {
+                if controls.flags & hil_actuator_controls::LOCKSTEP != 0 {
+                    say(Said::Took);
+                }
+                match &mut self.way {
+                    Way::Any => {}
+                    Way::Sitl { took } => *took = true,
+                    Way::Hitl(px4) => px4.react(),
+                }
+            }
+            Message::CommandAck(command_ack::Repr { command, result, .. }) => {
+                self.asking.answered(command, result);
+            }
+            Message::ParamValue(value) => {
+                if let Way::Hitl(px4) = &mut self.way {
+                    px4.parameters.take(&value);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Takes the first autopilot for the one at the other end.
+    fn beat(&mut self, header: &Header, beat: &heartbeat::Repr, now: i64) {
+        if beat.autopilot == NO_AUTOPILOT || beat.kind == GROUND_STATION {
+            return;
+        }
+        let &Header { version, system, component, .. } = header;
+        let heard = Autopilot { system, component, base_mode: beat.base_mode };
+        let known = *self.autopilot.get_or_insert(heard);
+        if (known.system, known.component) != (system, component) {
+            return;
+        }
+        self.autopilot = Some(heard);
+        self.voice.adopt(version, system);
+        if let Way::Hitl(px4) = &mut self.way
+            && px4.beat(now)
+        {
+            self.asking = Asking::default();
+        }
+    }
+
+    fn estimate(&mut self, time_boot_ms: u32, q: DQuat, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        if !(q.is_finite() && q.length_squared() > 0.25) {
+            self.damaged += 1;
+            return;
+        }
+        let attitude = Attitude::from_quat(q.normalize());
+        if let Way::Hitl(px4) = &mut self.way {
+            px4.attitude(attitude, now);
+        }
+        say(Said::Estimate(Estimate { stamp: Stamp::Own(i64::from(time_boot_ms) * 1_000_000), attitude }));
+    }
+}
+
+/// Whether a message of this id is between simulator and autopilot, and nobody else's: HIL_STATE, HIL_CONTROLS,
+/// HIL_RC_INPUTS_RAW, HIL_ACTUATOR_CONTROLS, HIL_SENSOR, HIL_GPS, HIL_OPTICAL_FLOW, HIL_STATE_QUATERNION.
+const fn is_hil(id: u32) -> bool {
+    matches!(id, 90..=93 | 107 | 113..=115)
+}
+
+#[cfg(test)]
+mod tests;

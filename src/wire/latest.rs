@@ -1,0 +1,80 @@
+//! Packets at a rate of their own, each with the newest sample of every sensor: what `msp`, `vectornav` and `mip`
+//! have in common.
+//!
+//! A packet is due on time whether or not a sample is: one that came later waits for the next packet, and a sensor
+//! without a new one is told again as it was, as a unit that holds its output registers does.
+
+use super::{Newest, Packet, Setup};
+use crate::schedule::Ticks;
+use crate::sensor::{ByKind, Reading, SensorKind};
+use crate::time::{Rate, SimTime};
+
+/// Gyro, accel and mag.
+const CARRIED: u8 = 0b111;
+
+pub(super) struct Latest {
+    newest: Newest,
+    /// Whose first sample begins the stream: the gyro, or without one the first sensor.
+    carrier: Option<SensorKind>,
+    beat: Ticks,
+    next: u64,
+}
+
+impl Latest {
+    /// Packets at the rate that `rate` makes of the first sensor's. Where it leaves that as it is, they follow the
+    /// sensor's ticks, its clock's error included.
+    pub(super) fn new(setup: &Setup<'_>, rate: impl FnOnce(Rate) -> Rate) -> Latest {
+        let carrier = setup.sensors.first();
+        let (own, clock, phase) = carrier.map_or((Rate::hz(1), Rate::hz(1), SimTime::ZERO), |sensor| {
+            (sensor.rate, sensor.clock(), sensor.phase)
+        });
+        let wanted = rate(own);
+        let beat = Ticks { rate: if wanted == own { clock } else { wanted }, phase };
+        Latest { newest: Newest::default(), carrier: carrier.map(|sensor| sensor.kind), beat, next: 0 }
+    }
+
+    /// Takes in the readings due at `t` and appends the packets due up to then, of the bytes that `write` makes of a
+    /// packet's time and the newest readings.
+    pub(super) fn encode(
+        &mut self,
+        t: SimTime,
+        readings: &[Reading],
+        out: &mut Vec<Packet>,
+        buffer: &mut [u8],
+        mut write: impl FnMut(SimTime, &ByKind<Option<Reading>>, &mut [u8]) -> usize,
+    ) {
+        let mut send = |latest: &mut Latest, due| {
+            if latest.has_begun() {
+                let len = write(due, &latest.newest.values, buffer);
+                out.push(latest.newest.packet(due, CARRIED, &buffer[..len]));
+            }
+            latest.next += 1;
+        };
+        while let Some(due) = Some(self.due()).filter(|&due| due < t) {
+            send(self, due);
+        }
+        self.newest.take_in(readings);
+        if self.due() == t {
+            send(self, t);
+        }
+    }
+
+    /// Samples of each kind taken in that no packet has carried yet.
+    pub(super) fn waiting(&self) -> ByKind<u64> {
+        self.newest.waiting()
+    }
+
+    /// When the next packet is due.
+    fn due(&self) -> SimTime {
+        self.beat.phase + self.beat.rate.tick(self.next)
+    }
+
+    fn has_begun(&self) -> bool {
+        self.carrier.is_some_and(|kind| self.newest.values[kind as usize].is_some())
+    }
+}
+
+/// A reading's axes in so many of a unit, 0 where there is none.
+pub(super) fn in_units(reading: Option<&Reading>, unit: f64) -> [f32; 3] {
+    reading.map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
+}

@@ -1,0 +1,72 @@
+//! `mip`: inertial packets of a MicroStrain unit, at each gyro tick.
+//!
+//! A packet has a field for each sensor that the scene has, and always the pressure, that of the standard atmosphere
+//! at sea level. Axes are forward, right, down; the field is in gauss, specific force in g. The stream ends with a
+//! vehicle that has stopped.
+
+use super::latest::{Latest, in_units};
+use super::mavlink::MICROTESLA_A_GAUSS;
+use super::{Encoder, Now, Packet, Setup, stopped};
+use crate::earth::STANDARD_GRAVITY;
+use crate::motion::Truth;
+use crate::sensor::{ByKind, Reading, SensorKind};
+use crate::time::SimTime;
+use ratetable_protocols::mip::{self, imu};
+
+/// The standard atmosphere at sea level, mbar.
+const SEA_LEVEL: f32 = 1013.25;
+
+pub(super) struct Mip {
+    latest: Latest,
+    kinds: Vec<SensorKind>,
+    last: Option<Truth>,
+}
+
+impl Mip {
+    pub(super) fn new(setup: &Setup<'_>) -> Mip {
+        let kinds = setup.sensors.iter().map(|sensor| sensor.kind).collect();
+        Mip { latest: Latest::new(setup, |own| own), kinds, last: None }
+    }
+}
+
+impl Encoder for Mip {
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        self.last = Some(*now.truth);
+        let mut buffer = [0; mip::MAX_LEN];
+        self.latest.encode(now.t, now.readings, out, &mut buffer, |_, newest, buffer| write(newest, buffer));
+    }
+
+    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
+        let Some(truth) = &self.last else { return };
+        let mut still: ByKind<Option<Reading>> = ByKind::default();
+        for (kind, value) in
+            [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
+        {
+            still[kind as usize] =
+                self.kinds.contains(&kind).then(|| Reading { value, ..Reading::zero(0, kind) });
+        }
+        let mut buffer = [0; mip::MAX_LEN];
+        let len = write(&still, &mut buffer);
+        out.push(Packet::new(t, 0, &buffer[..len]));
+    }
+
+    fn waiting(&self) -> ByKind<u64> {
+        self.latest.waiting()
+    }
+}
+
+/// The packet of the newest readings.
+fn write(newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
+    let field = |kind: SensorKind, unit: f64| {
+        let reading = newest[kind as usize].as_ref();
+        reading.map(|reading| in_units(Some(reading), unit))
+    };
+    let imu = imu::Repr {
+        pressure: Some(SEA_LEVEL),
+        mag: field(SensorKind::Mag, MICROTESLA_A_GAUSS),
+        accel: field(SensorKind::Accel, STANDARD_GRAVITY),
+        gyro: field(SensorKind::Gyro, 1.0),
+    };
+    // MAX_LEN holds every packet.
+    mip::encode(&imu, buffer).unwrap_or(0)
+}

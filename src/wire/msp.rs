@@ -1,0 +1,111 @@
+//! `msp`: INAV's simulator message, all sensors in one, at most 100 a second.
+//!
+//! Axes are forward, left, up. The field is sent as its direction, the place's strength as 20480 counts, with its
+//! horizontal part turned to true north: INAV takes the declination as 0. INAV keeps what came last for ever, so the
+//! stream ends with a vehicle that has stopped.
+
+use super::latest::Latest;
+use super::{Encoder, Now, Packet, Setup, stopped};
+use crate::earth::{STANDARD_GRAVITY, declination};
+use crate::geometry::{Body, Nav, Vector};
+use crate::motion::Truth;
+use crate::sensor::{ByKind, Reading, SensorKind};
+use crate::time::{Rate, SimTime};
+use ratetable_protocols::msp::{self, Message, simulator};
+
+/// As many packets a second as an INAV board takes.
+pub(super) const FASTEST: Rate = Rate::hz(100);
+
+/// The field's strength in counts.
+const FIELD: f64 = 20480.0;
+/// Counts a deg/s.
+pub(super) const GYRO_SCALE: f64 = 16.0;
+/// Counts a g.
+pub(super) const ACCEL_SCALE: f64 = 1000.0;
+
+const FLAGS: u8 = simulator::ENABLE | simulator::BATTERY | simulator::MUTE | simulator::OWN_ESTIMATE;
+
+pub(super) struct Msp {
+    latest: Latest,
+    /// The readings of the moment, the field turned.
+    turned: Vec<Reading>,
+    last: Option<Truth>,
+    has_mag: bool,
+}
+
+impl Msp {
+    pub(super) fn new(setup: &Setup<'_>) -> Msp {
+        let at_most = |rate: Rate| if rate.as_hz() > FASTEST.as_hz() { FASTEST } else { rate };
+        Msp {
+            latest: Latest::new(setup, at_most),
+            turned: Vec::with_capacity(setup.sensors.len()),
+            last: None,
+            has_mag: setup.sensors.iter().any(|sensor| sensor.kind == SensorKind::Mag),
+        }
+    }
+}
+
+impl Encoder for Msp {
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        let to_true_north = to_true_north(now.truth);
+        self.turned.clear();
+        self.turned.extend(now.readings.iter().map(|reading| match reading.kind {
+            SensorKind::Mag => Reading { value: reading.value + to_true_north, ..*reading },
+            _ => *reading,
+        }));
+        self.last = Some(*now.truth);
+        let strength = now.truth.field.length();
+        let mut buffer = [0; msp::MAX_LEN];
+        self.latest.encode(now.t, &self.turned, out, &mut buffer, |_, newest, buffer| {
+            let value =
+                |kind: SensorKind| newest[kind as usize].map_or(Vector::ZERO, |reading| reading.value);
+            frame([SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value), strength, buffer)
+        });
+    }
+
+    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
+        let Some(truth) = &self.last else { return };
+        let [gyro, accel, field] = stopped(truth);
+        let mag = if self.has_mag { field + to_true_north(truth) } else { Vector::ZERO };
+        let mut buffer = [0; msp::MAX_LEN];
+        let len = frame([gyro, accel, mag], truth.field.length(), &mut buffer);
+        out.push(Packet::new(t, 0, &buffer[..len]));
+    }
+
+    fn waiting(&self) -> ByKind<u64> {
+        self.latest.waiting()
+    }
+}
+
+/// What the place's field lacks, on the body's axes, to point to true north. Added to a reading it leaves the
+/// magnetometer's own errors on its own axes.
+fn to_true_north(truth: &Truth) -> Vector<Body> {
+    let field = truth.attitude.apply(truth.field);
+    if declination(field) == 0.0 {
+        return Vector::ZERO;
+    }
+    let turned: Vector<Nav> = Vector::new(libm::hypot(field.v.x, field.v.y), 0.0, field.v.z);
+    truth.attitude.inverse().apply(turned - field)
+}
+
+/// The frame of gyro, accel and mag; `strength` is the place's field in µT.
+fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, buffer: &mut [u8]) -> usize {
+    let field = if strength > 0.0 { FIELD / strength } else { 0.0 };
+    let message = Message::Simulator(simulator::Repr {
+        version: simulator::VERSION,
+        flags: FLAGS,
+        accel: counts(accel, ACCEL_SCALE / STANDARD_GRAVITY),
+        gyro: counts(gyro, GYRO_SCALE * 1f64.to_degrees()),
+        pressure: simulator::SEA_LEVEL,
+        mag: counts(mag, field),
+        ..simulator::Repr::default()
+    });
+    // MAX_LEN holds every frame.
+    msp::encode(&message, buffer).unwrap_or(0)
+}
+
+/// Forward, left and up in the nearest counts, clipped to what fits.
+fn counts(value: Vector<Body>, scale: f64) -> [i16; 3] {
+    let [x, y, z] = value.v.to_array();
+    [x, -y, -z].map(|axis| libm::round(axis * scale) as i16)
+}

@@ -1,0 +1,45 @@
+//! `vectornav`: IMU packets back to readings, a sample of each sensor in every packet, new or held.
+
+use super::{Counts, Sample, Source};
+use crate::geometry::Vector;
+use crate::sensor::SensorKind;
+use crate::time::SimTime;
+use crate::wire::mavlink::MICROTESLA_A_GAUSS;
+use glam::DVec3;
+use ratetable_protocols::Error;
+use ratetable_protocols::vectornav::{Decoder, Packet};
+
+#[derive(Default)]
+pub(super) struct Reader(Decoder);
+
+impl Reader {
+    pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+        self.0.feed(bytes, |received| take(received, counts, each));
+    }
+
+    pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+        self.0.finish(|received| {
+            if received.is_ok() {
+                take(received, counts, each);
+            }
+        });
+    }
+}
+
+fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+    let Ok(packet) = received else { return counts.refuse() };
+    counts.packets += 1;
+    let Packet::Imu(seen) = packet else { return counts.foreign(packet.name()) };
+    let t = i64::try_from(seen.time_ns).ok().map(SimTime);
+    let mut sample = |kind, values: [f32; 3], unit: f64| {
+        let value = DVec3::from_array(values.map(f64::from)) * unit;
+        let value = value.is_finite().then(|| Vector::from_vec(value));
+        each(Sample { kind, source: Source::only("vectornav"), t, value });
+    };
+    sample(SensorKind::Gyro, seen.gyro, 1.0);
+    sample(SensorKind::Accel, seen.accel, 1.0);
+    // A field of exactly nothing is a magnetometer that is not there.
+    if seen.mag != [0.0; 3] {
+        sample(SensorKind::Mag, seen.mag, MICROTESLA_A_GAUSS);
+    }
+}

@@ -1,0 +1,108 @@
+//! `vectornav`: the two binary outputs that ArduPilot asks a VN-100 for.
+//!
+//! IMU packets go out at the rate that the flight controller asked for, or else the gyro's; AHRS packets 50 times a
+//! second with the true attitude, at the first tick of any sensor at or after their time. ArduPilot's own estimators
+//! do not use that one. Axes are forward, right, down; the field is in gauss. The stream ends with a vehicle that has
+//! stopped.
+
+use super::latest::{Latest, in_units};
+use super::mavlink::MICROTESLA_A_GAUSS;
+use super::{Encoder, Now, Packet, Setup, stopped};
+use crate::geometry::{Euler, Vector};
+use crate::motion::Truth;
+use crate::sensor::{ByKind, REFERENCE_TEMPERATURE, Reading, SensorKind};
+use crate::time::{Rate, SimTime};
+use ratetable_protocols::vectornav::{self, MAX_LEN, ahrs, imu};
+
+/// AHRS packets a second.
+const AHRS: Rate = Rate::hz(50);
+/// The standard deviation that an AHRS packet claims, degrees.
+const UNCERTAINTY: f32 = 0.1;
+/// The standard atmosphere at sea level, kPa.
+const SEA_LEVEL: f32 = 101.325;
+
+pub(super) struct Vectornav {
+    latest: Latest,
+    /// Which AHRS packet is next.
+    next: u64,
+    last: Option<Truth>,
+    has_mag: bool,
+}
+
+impl Vectornav {
+    pub(super) fn new(setup: &Setup<'_>) -> Vectornav {
+        Vectornav {
+            latest: Latest::new(setup, |own| setup.peer.rate.unwrap_or(own)),
+            next: 0,
+            last: None,
+            has_mag: setup.sensors.iter().any(|sensor| sensor.kind == SensorKind::Mag),
+        }
+    }
+}
+
+impl Encoder for Vectornav {
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        self.last = Some(*now.truth);
+        let mut buffer = [0; MAX_LEN];
+        self.latest.encode(now.t, now.readings, out, &mut buffer, write);
+        if AHRS.tick(self.next) <= now.t {
+            self.next = AHRS.ticks_before(SimTime::ZERO, SimTime(now.t.0 + 1));
+            let len = encoded(&vectornav::Packet::Ahrs(attitude(now.truth)), &mut buffer);
+            out.push(Packet::new(now.t, 0, &buffer[..len]));
+        }
+    }
+
+    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
+        let Some(truth) = &self.last else { return };
+        let mut still: ByKind<Option<Reading>> = ByKind::default();
+        for (kind, value) in
+            [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
+        {
+            let value = if kind == SensorKind::Mag && !self.has_mag { Vector::ZERO } else { value };
+            still[kind as usize] = Some(Reading { value, ..Reading::zero(0, kind) });
+        }
+        let mut buffer = [0; MAX_LEN];
+        let len = write(t, &still, &mut buffer);
+        out.push(Packet::new(t, 0, &buffer[..len]));
+    }
+
+    fn waiting(&self) -> ByKind<u64> {
+        self.latest.waiting()
+    }
+}
+
+/// The IMU packet of the newest readings.
+fn write(t: SimTime, newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
+    let [gyro, accel, mag] =
+        [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(|kind| newest[kind as usize].as_ref());
+    let warm = gyro.or(accel).map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature);
+    let (gyro, accel) = (in_units(gyro, 1.0), in_units(accel, 1.0));
+    let imu = imu::Repr {
+        time_ns: t.0 as u64,
+        gyro,
+        accel,
+        raw_accel: accel,
+        raw_gyro: gyro,
+        mag: in_units(mag, MICROTESLA_A_GAUSS),
+        temperature: warm as f32,
+        pressure: SEA_LEVEL,
+    };
+    encoded(&vectornav::Packet::Imu(imu), buffer)
+}
+
+/// The AHRS payload of the truth.
+fn attitude(truth: &Truth) -> ahrs::Repr {
+    let q = truth.attitude.q;
+    let Euler { roll, pitch, yaw } = Euler::from_quat(q);
+    ahrs::Repr {
+        time_ns: truth.t.0 as u64,
+        yaw_pitch_roll: [yaw, pitch, roll].map(|angle| angle.to_degrees() as f32),
+        xyzw: [q.x, q.y, q.z, q.w].map(|x| x as f32),
+        uncertainty: [UNCERTAINTY; 3],
+    }
+}
+
+/// MAX_LEN holds every packet.
+fn encoded(packet: &vectornav::Packet, buffer: &mut [u8]) -> usize {
+    vectornav::encode(packet, buffer).unwrap_or(0)
+}
