@@ -14,7 +14,7 @@ use std::convert::Infallible;
 use std::thread;
 
 /// Half an hour of it.
-const SCENE: &str = "seed = 7\nduration = \"1800 s\"\n[[motion]]\nkind = \"rock\"\namplitude = \"40 deg/s\"\nfrequency = \"0.3 Hz\"\naxis = \"[1, 2, 3]\"\nduration = \"1800 s\"\n[gyro]\nrate = \"100 Hz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"100 Hz\"\nnoise_std = \"0.02 m/s^2\"\n[mag]\nrate = \"50 Hz\"\nnoise_std = \"0.2 uT\"\n";
+const SCENE: &str = "seed = 7\nduration = \"1800 s\"\n[[motion]]\nkind = \"rock\"\namplitude = \"40 deg/s\"\nfrequency = \"0.3 Hz\"\naxis = \"pitch\"\nduration = \"1800 s\"\n[gyro]\nrate = \"100 Hz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"100 Hz\"\nnoise_std = \"0.02 m/s^2\"\n[mag]\nrate = \"50 Hz\"\nnoise_std = \"0.2 uT\"\n";
 
 /// A virtual clock whose sleeps end up to a millisecond late, and on which the other side reads what has arrived.
 struct Reading {

@@ -158,6 +158,12 @@ fn live(
         pacer.steps = vec![lockstep.then(|| Step::new(took))];
         pacer.run(0, shared);
         let end = pacer.clock.now;
+        // What is left of a packet that the link took in part.
+        while pacer.senders[0].kept() > 0 {
+            let (far, text) = &mut *there.lock().unwrap();
+            text.extend(far.take());
+            let _ = pacer.senders[0].send(&[]);
+        }
         let mut tally = pacer.tallies.remove(0);
         tally.replies += talk.lock().unwrap().replies()[0];
         (producer.join().unwrap(), tally, end)
@@ -218,7 +224,9 @@ fn the_vehicle_is_held_still_until_the_other_side_is_ready_and_then_the_scene_is
                 "the counts have the rest in them"
             );
         }
-        assert_eq!(ran.replies(), ["[hello]"]);
+        // Asked twice a second until it speaks, and then answered.
+        let (last, asked) = ran.replies().split_last().map(|(last, asked)| (*last, asked.len())).unwrap();
+        assert_eq!((last, asked as i64), ("[hello]", ready_ms.max(1) / 500));
     }
 }
 
