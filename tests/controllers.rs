@@ -132,7 +132,7 @@ fn px4_in_lockstep_gets_each_packet_after_its_answer_to_the_one_before() {
             });
             sensed += now;
             // The first twenty go unanswered; a while after the first answer there is only ever one on its way.
-            together = together.max(if sensed > 40 { now } else { 0 });
+            together = together.max(if sensed > 120 { now } else { 0 });
             for _ in 0..if sensed > 20 { now } else { 0 } {
                 if stream.write_all(&answer).is_err() {
                     break;
@@ -193,7 +193,7 @@ fn px4_on_its_board_is_waited_for_held_still_and_bridged_to_a_ground_station() {
     let run = Run::start("px4@PTY", &[&qgc, "--wait", "60s"]);
     let port = open(&run.port());
     // The ground station sets a parameter: a frame that this program does not know.
-    let order = packet(&Message::ParamValue(param_value::Repr { value: 7.0, ..Default::default() }));
+    let order = packet(&Message::ParamValue(param_value::Repr { param_value: 7.0, ..Default::default() }));
     let (mut overheard, mut arrived) = (Vec::new(), Vec::new());
     px4(port, 1000, |turn, bytes| {
         arrived.extend_from_slice(bytes);

@@ -3,7 +3,7 @@
 
 use super::lockstep::Step;
 use super::overload::{Due, Queue, RETRY};
-use super::replies::Replies;
+use super::replies::{Replied, Replies};
 use super::tally::{Effort, LinkTally, SensorTally};
 use super::watch::Watching;
 use super::{Item, Shared};
@@ -164,7 +164,11 @@ impl<C: Clock> Pacer<C> {
                 self.clock.sleep_until(now + look_up / 2);
                 continue;
             }
-            if replied && due > now + SPARE {
+            if replied != Replied::Nothing && due > now + SPARE {
+                // Right behind a packet a link is full: later it may take the reply, too.
+                if replied == Replied::Full {
+                    self.clock.sleep_until(now + RETRY);
+                }
                 continue;
             }
             // The packet leaves the ring before the wait, so that nothing stands between the wait and the write.
