@@ -26,11 +26,13 @@ const ARROWS: &[(&str, &[&str])] = &[
     // Motion and sensor declare their keys as data, so they need `keys` and `quantity`; a sensor's streams are
     // named by it and seeded from outside, so it needs `random`: all three are foundation.
     ("motion", &["earth"]),
-    ("sensor", &["motion"]),
+    // A receiver's fix is a place, and a barometer's pressure that of an altitude.
+    ("sensor", &["motion", "earth"]),
     ("schedule", &[]),
     // An output names its protocol and its link, whose spellings and parameters are theirs.
     ("scene", &["earth", "motion", "sensor", "schedule", "wire", "link"]),
-    ("player", &["scene", "motion", "sensor", "schedule"]),
+    // Where the vehicle is follows from where the scene begins.
+    ("player", &["scene", "motion", "sensor", "schedule", "earth"]),
     // The sizes of effects follow from the plan: its motion, place, sensors and their parts. The player's error-free
     // reading is what they are sizes beside, and a report's short numbers stand in their notes.
     ("effects", &["scene", "player", "motion", "sensor", "earth", "report"]),
@@ -50,7 +52,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("listen", &["link", "wire", "clock", "sensor", "report", "os"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
-    ("dataset", &["player", "scene", "sensor", "motion", "parallel"]),
+    ("dataset", &["player", "scene", "sensor", "motion", "parallel", "earth"]),
     ("study", &["player", "motion", "clock", "scene", "sensor", "report", "parallel"]),
     ("parallel", &[]),
     (

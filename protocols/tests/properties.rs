@@ -347,16 +347,16 @@ proptest! {
         packet in any_vectornav(),
         inertial in any_mip(),
     ) {
-        let mut out = [0; 300];
-        let encoders: [&dyn Fn(&mut [u8]) -> Result<usize, Error>; 3] = [
-            &|out| msp::encode(&frame, out),
-            &|out| vectornav::encode(&packet, out),
-            &|out| mip::encode(&inertial, out),
-        ];
-        for encode in encoders {
-            let len = encode(&mut out).unwrap();
-            prop_assert_eq!(encode(&mut out[..len]), Ok(len));
-            prop_assert_eq!(encode(&mut out[..len - 1]), Err(Error::BufferTooSmall { needed: len }));
-        }
+        needs_its_length(|out| msp::encode(&frame, out))?;
+        needs_its_length(|out| vectornav::encode(&packet, out))?;
+        needs_its_length(|out| mip::encode(&inertial, out))?;
     }
+}
+
+fn needs_its_length(encode: impl Fn(&mut [u8]) -> Result<usize, Error>) -> Result<(), TestCaseError> {
+    let mut out = [0; 300];
+    let len = encode(&mut out).unwrap();
+    prop_assert_eq!(encode(&mut out[..len]), Ok(len));
+    prop_assert_eq!(encode(&mut out[..len - 1]), Err(Error::BufferTooSmall { needed: len }));
+    Ok(())
 }

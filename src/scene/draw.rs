@@ -1,12 +1,13 @@
 //! Values drawn once a run: `noise_std = { uniform = ["0.001 rad/s", "0.003 rad/s"] }`.
 
+use super::declared::nav_in;
 use super::document::{Node, Table, Value};
 use super::section::Section;
 use crate::geometry::Vector;
 use crate::keys::{self, Key, Takes};
 use crate::quantity::{self, Kind, Sign};
 use crate::random::{self, Stream};
-use crate::sensor::{self, SensorPlan};
+use crate::sensor::{self, SensorKind, SensorPlan};
 use glam::{DMat3, DVec3};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
@@ -24,8 +25,10 @@ impl Section<'_> {
     /// A value drawn once a run: `{ uniform = [low, high] }` or `{ normal = [mean, std] }`, each axis by itself.
     pub(super) fn draw(&self, key: &Key, table: &Table) -> Option<keys::Value> {
         let (kind, scalar) = match key.takes {
-            Takes::Scalar(kind) => (kind, true),
-            Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Matrix(kind) => (kind, false),
+            Takes::Scalar(kind) | Takes::OneAxis(kind) => (kind, true),
+            Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::NavVector(kind) | Takes::Matrix(kind) => {
+                (kind, false)
+            }
             _ => {
                 self.mistake(key.name, "cannot be drawn from a distribution");
                 return None;
@@ -52,7 +55,8 @@ impl Section<'_> {
         let sign = self.reader.axes.get().body_sign();
         Some(match key.takes {
             Takes::Scalar(_) => keys::Value::Scalar(drawn[0].into()),
-            Takes::PerAxis(_) => keys::Value::Triple(drawn.map(Into::into)),
+            Takes::PerAxis(_) | Takes::OneAxis(_) => keys::Value::Triple(drawn.map(Into::into)),
+            Takes::NavVector(_) => keys::Value::Triple(nav_in(self.axes(), kind, drawn.map(Into::into))),
             Takes::Matrix(_) => keys::Value::Matrix(DMat3::from_diagonal(DVec3::from_array(drawn))),
             _ => keys::Value::Triple([drawn[0], drawn[1] * sign, drawn[2] * sign].map(Into::into)),
         })
@@ -62,8 +66,14 @@ impl Section<'_> {
     pub(super) fn settle_bias(&self, plan: &mut SensorPlan) {
         let context = plan.context(self.seed());
         let Some(bias) = sensor::settle_bias(&mut plan.values, &context) else { return };
-        let text =
-            quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), plan.kind.unit());
+        let unit = plan.kind.unit();
+        let text = match plan.kind {
+            SensorKind::Baro => quantity::text_scalar(bias.x, unit),
+            SensorKind::Gps => {
+                quantity::text_vector(self.axes().nav_out(Vector::from_vec(bias)).to_array(), unit)
+            }
+            _ => quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), unit),
+        };
         self.reader
             .draws
             .borrow_mut()

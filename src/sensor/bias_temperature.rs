@@ -11,9 +11,10 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Bias,
     needs: &[],
     keys: |sensor| {
+        let Some(per_kelvin) = sensor.units().per_kelvin else { return vec![] };
         vec![Key {
             name: "bias_temperature",
-            takes: Takes::BodyVector(sensor.units().per_kelvin),
+            takes: Takes::BodyVector(per_kelvin),
             default: Some("0"),
             about: "bias per kelvin from 25 degC: acts where a `temperature` is given",
         }]

@@ -73,7 +73,7 @@ pub(super) static KIND: TermKind = TermKind {
         let keys = match sensor {
             SensorKind::Gyro => &GYRO,
             SensorKind::Accel => &ACCEL,
-            SensorKind::Mag => return vec![],
+            _ => return vec![],
         };
         vec![Key {
             name: "vibration",

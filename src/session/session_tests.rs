@@ -8,6 +8,7 @@ use crate::clock::Clock;
 use crate::link::Far;
 use crate::player::{BLOCK, Player};
 use crate::scene::Overload;
+use crate::sensor::SensorKind;
 use crate::wire::samples::Samples;
 use crate::wire::{self, Now, Protocol, Setup};
 use std::convert::Infallible;
@@ -76,7 +77,7 @@ fn half_an_hour(plan: &Plan, protocol: Protocol) {
     pacer.clock.bytes.extend(pacer.clock.far.take());
     let (tally, bytes) = (&pacer.tallies[0], &pacer.clock.bytes);
     assert_eq!((tally.packets, tally.dropped), (made.packets[0], 0), "{name}");
-    assert_eq!(made.samples[0], [90_000, 90_000, 45_000], "{name}");
+    assert_eq!(made.samples[0][..3], [90_000, 90_000, 45_000], "{name}");
     assert!(
         tally.sensors[0].latest_ns() > 500_000,
         "{name}: the clock was late, {}",
@@ -85,7 +86,7 @@ fn half_an_hour(plan: &Plan, protocol: Protocol) {
     assert!(*bytes == encoded(plan, protocol), "{name}: the very bytes, each packet once and in order");
     // And so says a decoder that knows nothing of the scene.
     let mut samples = Samples::new(protocol);
-    let (mut counts, mut last, mut backwards) = ([0; 3], [SimTime(-1); 3], 0);
+    let (mut counts, mut last, mut backwards) = ([0; SensorKind::COUNT], [SimTime(-1); SensorKind::COUNT], 0);
     let mut each = |sample: wire::samples::Sample| {
         let kind = sample.kind as usize;
         counts[kind] += 1;

@@ -213,9 +213,9 @@ fn the_vehicle_is_held_still_until_the_other_side_is_ready_and_then_the_scene_is
             let off = (0..3).map(|i| (value[i] - truth[i]).abs()).fold(0.0, f64::max);
             assert!(off > 0.0 && off < 6.0 * noise[*kind as usize], "{kind} at {t}: {off}");
         }
-        for kind in SensorKind::ALL {
+        for sensor in &plan.sensors {
+            let (kind, rate) = (sensor.kind, sensor.rate);
             let ticks: Vec<_> = rows.iter().filter(|row| row.1 == kind).map(|row| row.0).collect();
-            let rate = plan.sensors[kind as usize].rate;
             let whole = (0..ticks.len() as u64).map(|k| rate.tick(k).0).collect::<Vec<_>>();
             assert_eq!(ticks, whole, "{kind} ticks through the seam as if there were none");
             assert_eq!(
