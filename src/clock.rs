@@ -18,6 +18,11 @@ pub trait Clock: Send {
     /// Gives the processor away until `t`; wakes as late as the system makes it. At once when `t` has passed.
     fn sleep_until(&mut self, t: i64);
 
+    /// As [`Clock::sleep_until`], but another thread may end it early by unparking this one.
+    fn doze_until(&mut self, t: i64) {
+        self.sleep_until(t);
+    }
+
     /// Keeps the processor until `t`; at once when it has passed.
     fn spin_until(&mut self, t: i64) {
         while self.now() < t {

@@ -13,7 +13,7 @@ pub use text::{number, table};
 pub use times::Times;
 pub use timing::{Baseline, SensorTiming, TimingReport};
 
-use crate::score::Score;
+use crate::score::Figures;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -32,7 +32,9 @@ pub struct Report {
     pub seed: u64,
     /// Scene time played, s.
     pub duration_s: f64,
-    /// For how long scene time stood still because a link was full (`overload = "stretch"`), s.
+    /// For how long the vehicle was held still before the scene began, s: in the counts, and not in `duration_s`.
+    pub rest_s: f64,
+    /// For how long scene time stood still because a link was full (`overload = "stretch"`) or a controller in lockstep took its time, s.
     pub stretched_s: f64,
     /// Scene seconds a second, or `max`.
     pub speed: serde_json::Value,
@@ -46,7 +48,17 @@ pub struct Report {
     pub links: Vec<LinkReport>,
     /// How well the other side knew its attitude, where it answered.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub attitude: Option<Score>,
+    pub attitude: Option<AttitudeReport>,
+}
+
+/// How well somebody knew the attitude.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AttitudeReport {
+    /// Whose estimate it is.
+    pub estimator: String,
+    /// What it amounts to.
+    #[serde(flatten)]
+    pub figures: Figures,
 }
 
 /// What a run ran on.
@@ -97,6 +109,8 @@ pub struct SensorReport {
     pub sent: u64,
     /// Samples that a full or broken link, or a newer sample, cost.
     pub dropped: u64,
+    /// Those of the dropped that a newer sample replaced because packets are fewer than samples.
+    pub replaced: u64,
     /// Samples still on their way when the run was stopped.
     pub queued: u64,
     /// The moment just before the write call minus due, µs.
@@ -184,6 +198,8 @@ pub struct LinkReport {
     /// When the port was unplugged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaps: Option<Gaps>,
+    /// Packets that it took beside the stream: answers to the other side, requests, a farewell.
+    pub replies: u64,
     /// Packets that each kind of fault acted on, of those its output has; not among `dropped`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub faults: BTreeMap<&'static str, u64>,

@@ -25,10 +25,12 @@ pub mod parts;
 mod preset;
 mod reader;
 mod reference;
+mod rest;
 mod section;
 mod sensors;
 mod suggest;
 mod sweep;
+mod target;
 mod vehicle;
 
 pub use document::Place;
@@ -40,6 +42,7 @@ pub use output::{Destination, Output, Overload};
 pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
 pub use sweep::{Runs, SweptValue};
+pub use target::{TARGETS, Target};
 
 use crate::earth::{self, Day};
 use crate::geometry::Axes;

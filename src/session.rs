@@ -2,36 +2,48 @@
 //!
 //! ```text
 //! producer thread: player ─ encoders ─▶ ring ─▶ pacing thread: wait until due, write ─▶ links
-//!                                                control (this thread, tokio): peers, answers, Ctrl-C, the command
+//!                                  ring of replies ─▶ (between packets)                    │
+//!                                          └── control (this thread, tokio): dialogues ◀───┘ Ctrl-C, the command
 //! ```
 //!
 //! A prescribed motion does not depend on the wall clock, so everything is computed ahead and the pacing thread only
 //! waits and writes: the cost of the models never shows up as jitter. It allocates nothing and takes no lock.
+//!
+//! Two times go by. *Stream time* is what packets are due at, from the first one on. *Scene time* begins when the
+//! scene does: at once, or after a rest in which the vehicle is held still for the other side's estimator to settle.
 
 mod answers;
 mod command;
 mod control;
+mod ears;
+mod finish;
 mod granted;
+mod hold;
 mod interrupt;
 mod links;
+mod lockstep;
 mod overload;
 #[cfg(test)]
 mod overload_tests;
 mod pacer;
 mod producer;
+mod replies;
+mod talk;
 mod tally;
+mod waiting;
 mod watch;
 
+pub use answers::{Judging, Off};
 pub use control::run;
 pub use interrupt::on_interrupt;
 pub use pacer::Speed;
 pub use watch::{Record, Watch, Watched};
 
 use crate::geometry::Attitude;
-use crate::link::LinkError;
+use crate::link::{Address, LinkError};
 use crate::report::{LinkReport, PacingReport, SensorReport};
 use crate::scene::{Output, Plan};
-use crate::score::Score;
+use crate::score::Figures;
 use crate::time::SimTime;
 use crate::wire::Packet;
 use std::sync::Arc;
@@ -47,6 +59,11 @@ pub struct Job {
     pub outputs: Vec<Output>,
     /// Scene time at which it ends.
     pub end: SimTime,
+    /// How long the vehicle is held still before the scene at the least, and then until every other side is ready;
+    /// `None` begins with the scene.
+    pub rest: Option<SimTime>,
+    /// A ground station, and which of the outputs has the controller that it is to talk to.
+    pub ground: Option<(Address, usize)>,
     /// How fast scene time goes.
     pub speed: Speed,
     /// How long to wait for somebody on the other side; zero starts at once.
@@ -55,8 +72,8 @@ pub struct Job {
     pub command: Vec<String>,
     /// Whether standard output is ours alone: the command's then goes to standard error.
     pub keep_stdout: bool,
-    /// What the estimator on the other side is called in the score.
-    pub estimator: String,
+    /// How what the other side estimates is judged.
+    pub judging: Judging,
     /// The processor that the pacing thread is to keep to.
     pub cpu: Option<usize>,
     /// A comparison with a bare timer, on the pacing thread.
@@ -84,7 +101,13 @@ pub enum Event<'a> {
     Notice(String),
     /// A link is open: protocol and what to connect to.
     Ready(&'a str),
-    /// Somebody is there and the scene starts.
+    /// A ground station is spoken to there.
+    Ground(&'a str),
+    /// The controller on that link is waited for: nothing is streamed before it is heard.
+    Silent(&'a str),
+    /// The stream starts with the vehicle held still.
+    Still,
+    /// The scene starts.
     Started,
     /// How far it is.
     Progress(Progress),
@@ -93,14 +116,16 @@ pub enum Event<'a> {
 /// How far a run is.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// Scene time.
+    /// Scene time; while the vehicle is held still, for how long.
     pub t: SimTime,
+    /// Whether it is held still before the scene.
+    pub still: bool,
     /// Packets sent.
     pub packets: u64,
     /// Samples lost.
     pub dropped: u64,
-    /// The newest estimate's whole error in degrees.
-    pub error_deg: Option<f64>,
+    /// How far the newest estimate is off.
+    pub error: Option<Off>,
 }
 
 /// What came of it.
@@ -110,7 +135,9 @@ pub struct Outcome {
     pub played: SimTime,
     /// Whether it was stopped by the user.
     pub interrupted: bool,
-    /// For how long scene time stood still for a link that was full, s.
+    /// For how long the vehicle was held still before the scene, s.
+    pub rest_s: f64,
+    /// For how long scene time stood still for a link that was full or a controller in lockstep, s.
     pub stretched_s: f64,
     /// Whether the pacing thread had real-time priority.
     pub realtime: bool,
@@ -127,8 +154,8 @@ pub struct Outcome {
     /// The faults of outputs that acted: `mpu@pty drop from 2 s to 3 s`.
     pub faults: Vec<String>,
     /// What the other side estimated, judged.
-    pub score: Option<Score>,
-    /// Every estimate that came back.
+    pub attitude: Option<Figures>,
+    /// Every estimate that came back, with the scene time at which it held as far as that is known.
     pub estimates: Vec<(SimTime, Attitude)>,
     /// The command's exit code; `None` without a command, or when it was ended by us.
     pub command: Option<i32>,
@@ -147,6 +174,28 @@ pub enum SessionError {
         link: String,
         /// For how long we waited.
         waited: Duration,
+    },
+    /// A controller never said what it begins with.
+    #[error("{link} was not heard in {}: {came}; wait longer with --wait TIME, or start at once with --wait 0", seconds(*waited))]
+    Unheard {
+        /// What to connect to.
+        link: String,
+        /// For how long we waited.
+        waited: Duration,
+        /// What came instead, and what may be wrong.
+        came: String,
+    },
+    /// A controller's estimator did not settle.
+    #[error(
+        "{link} is not ready after {rested} at rest: {came}; wait longer with --wait TIME, or start at once with --wait 0"
+    )]
+    NotReady {
+        /// What to connect to.
+        link: String,
+        /// For how long it was fed the vehicle at rest.
+        rested: SimTime,
+        /// What came of it.
+        came: String,
     },
     /// The command could not be started.
     #[error("`{program}` could not be started: {source}")]
@@ -184,17 +233,35 @@ struct Shared {
     stop: AtomicBool,
     /// The producer has pushed its last packet.
     all_made: AtomicBool,
-    /// Due time of the packet sent last, ns.
-    scene_ns: AtomicI64,
-    /// Wall time of scene time 0 on the run's clock, ns; −1 before the start. It moves when scene time is stretched.
+    /// Due time of the packet sent last, ns of stream time.
+    stream_ns: AtomicI64,
+    /// Every other side is ready for the scene.
+    ready: AtomicBool,
+    /// Stream time at which the scene starts, ns; the greatest number before that is known.
+    scene_starts_ns: AtomicI64,
+    /// Wall time of stream time 0 on the run's clock, ns; −1 before the start. It moves when scene time is stretched.
     start_ns: AtomicI64,
-    /// Scene time at which it was stretched last, ns: what was due earlier was due by an earlier start.
+    /// Stream time at which it was stretched last, ns: what was due earlier was due by an earlier start.
     stretched_at_ns: AtomicI64,
     packets: AtomicU64,
     dropped: AtomicU64,
+    /// Packets whose answer was not waited for any longer.
+    untaken: AtomicU64,
 }
 
 impl Shared {
+    /// Before the start of a run with such a rest.
+    fn before(rest: Option<SimTime>) -> Shared {
+        let scene_starts_ns = AtomicI64::new(if rest.is_some() { i64::MAX } else { 0 });
+        Shared { start_ns: AtomicI64::new(-1), scene_starts_ns, ..Shared::default() }
+    }
+
+    /// Scene time at a stream time; `None` before the scene.
+    fn scene_time(&self, stream: SimTime) -> Option<SimTime> {
+        let starts = SimTime(self.scene_starts_ns.load(Ordering::Acquire));
+        (stream >= starts).then(|| stream - starts)
+    }
+
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
@@ -202,6 +269,10 @@ impl Shared {
 
 #[cfg(test)]
 mod fault_tests;
+#[cfg(test)]
+mod session_tests;
+#[cfg(test)]
+mod talk_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

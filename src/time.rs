@@ -120,6 +120,12 @@ impl Rate {
         SimTime(i64::try_from(ns).unwrap_or(i64::MAX))
     }
 
+    /// How many ticks so many seconds hold, where that is a whole number: then the ticks after them are those after 0.
+    pub fn whole_ticks(self, seconds: u64) -> Option<u64> {
+        let ticks = self.numerator.checked_mul(seconds)?;
+        ticks.is_multiple_of(self.denominator).then(|| ticks / self.denominator)
+    }
+
     /// How many ticks fall in `[0, end)` when tick 0 is due at `phase`.
     pub fn ticks_before(self, phase: SimTime, end: SimTime) -> u64 {
         let span = i128::from(end.0) - i128::from(phase.0);

@@ -30,8 +30,8 @@ use dialogue::Peer;
 pub use mavlink::{Extra, Extras};
 pub use ratetable_protocols::mavlink::Version;
 
-/// The longest packet of any protocol, bytes.
-pub const MAX_PACKET: usize = 232;
+/// The longest packet of any protocol, bytes: a signed MAVLink 2 message, such as a ground station may send.
+pub const MAX_PACKET: usize = 280;
 
 /// One packet: when it is due, what it carries, its bytes. Plain data of fixed size, so that handing it over
 /// allocates nothing.

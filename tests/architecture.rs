@@ -67,8 +67,8 @@ const ARROWS: &[(&str, &[&str])] = &[
 /// What of the outside only some rooms may touch.
 const OUTSIDE: &[(&str, &[&str])] = &[
     // The demonstration of `cli` runs a firmware, which has a processor of its own; `parallel` spreads jobs that have
-    // nothing to do with one another over the processors.
-    ("std::thread", &["session", "link", "cli", "parallel"]),
+    // nothing to do with one another over the processors; `clock` parks the thread that waits on it.
+    ("std::thread", &["session", "link", "cli", "parallel", "clock"]),
     // `os` reads what the kernel shows as files of its own: who holds a port, what a device is.
     ("std::fs", &["scene", "dataset", "report", "link", "os", "score", "study"]),
     ("std::net", &["link"]),

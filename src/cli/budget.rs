@@ -188,10 +188,7 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
         let next = STANDARD_BAUDS.iter().find(|baud| bytes_per_second(**baud) >= self.needed);
         match next {
             Some(&baud) => {
-                let to = Destination {
-                    protocol: self.output.to.protocol,
-                    address: self.output.to.address.clone().at_baud(baud),
-                };
+                let to = self.output.to.at(self.output.to.address.clone().at_baud(baud));
                 let (carried, usb) = (bytes_per_second(baud), self.usb());
                 format!(
                     "a higher baud rate: {to} carries {} bytes/s, {:.0} % of it needed{usb}",

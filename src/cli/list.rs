@@ -64,7 +64,7 @@ fn body(what: What) -> Result<String, Refusal> {
         What::Keys => keys(),
         What::Protocols => {
             let row = |protocol: Protocol| vec![protocol.name().into(), protocol.about().into()];
-            table(&["name", "about"], &Protocol::ALL.map(row))
+            table(&["name", "about"], &Protocol::ALL.map(row)) + "\n" + &targets()
         }
         What::Links => {
             let row = |scheme: &link::Scheme| vec![scheme.spelling.into(), scheme.about.into()];
@@ -72,6 +72,16 @@ fn body(what: What) -> Result<String, Refusal> {
         }
         What::Ports => ports(),
     })
+}
+
+/// Flight controllers, each with what its name stands for.
+fn targets() -> String {
+    let mut text = "targets: a flight controller's name in place of a protocol\n".to_string();
+    for target in &scene::TARGETS {
+        text += &format!("{}: {}\n", target.name, target.about);
+        target.expansion().iter().for_each(|line| text += &format!("  {line}\n"));
+    }
+    text
 }
 
 fn parts() -> Result<String, Refusal> {

@@ -1,5 +1,6 @@
 //! Values of options that are not plain strings.
 
+use crate::link::Address;
 use crate::quantity::{self, Sign};
 use crate::report::Limit;
 use crate::scene::{Destination, Output, Plan};
@@ -37,6 +38,16 @@ pub fn speed(text: &str) -> Result<Speed, String> {
                 .into())
         }
     }
+}
+
+/// `--rest`: a time, or `0`.
+pub fn rest(text: &str) -> Result<SimTime, String> {
+    Ok(SimTime(wait(text)?.as_nanos() as i64))
+}
+
+/// `--qgc`: where a ground station listens.
+pub fn ground(text: &str) -> Result<Address, String> {
+    format!("udpout:{text}").parse().map_err(|error: crate::link::LinkError| error.to_string())
 }
 
 /// `--cpu`: a processor that this process may use.

@@ -1,7 +1,7 @@
 //! Live progress on standard error, where that is a terminal.
 
 use crate::listen;
-use crate::session::Progress;
+use crate::session::{Off, Progress};
 use crate::time::SimTime;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -40,8 +40,15 @@ impl Bar {
 
     /// Of a live run.
     pub fn live(&self, progress: &Progress) {
-        let Progress { t, packets, dropped, error_deg } = progress;
-        let error = error_deg.map_or(String::new(), |degrees| format!(", AHRS off by {degrees:.2}°"));
+        let Progress { t, still, packets, dropped, error } = progress;
+        let error = error.map_or(String::new(), |off| {
+            let Off { roll_deg, pitch_deg, heading_deg, .. } = off;
+            format!(", off by roll {roll_deg:+.2}° pitch {pitch_deg:+.2}° heading {heading_deg:+.2}°")
+        });
+        if *still {
+            self.0.set_message(format!("held still for {:.1} s, {packets} packets", t.seconds()));
+            return;
+        }
         let lost = if *dropped > 0 { format!(", {dropped} samples dropped") } else { String::new() };
         self.0.set_message(format!("{:.1} s, {packets} packets{lost}{error}", t.seconds()));
         self.0.set_position((t.0 / MILLIS) as u64);

@@ -6,11 +6,11 @@ use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary};
 use crate::link::Address;
 use crate::report::{
-    Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
+    AttitudeReport, Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
 };
 use crate::scene::{Destination, Output, OutputFault, Overload, Plan};
-use crate::score::Score;
-use crate::session::{self, Event, Job, Outcome, Speed};
+use crate::score::{Align, DelayKnown, Figures};
+use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
 use serde_json::Value;
@@ -25,7 +25,7 @@ const DEMO_SCENE: &str = "table-1";
 pub struct Arguments {
     /// A TOML file or the name of a built-in scene [default: table-1, in a demonstration]
     scene: Option<String>,
-    /// Where to: PROTOCOL@LINK, such as mpu@pty or mavlink@/dev/ttyACM0,921600; may be repeated
+    /// Where to: PROTOCOL@LINK or TARGET@LINK, such as mpu@pty or px4@/dev/ttyACM0; may be repeated
     #[arg(long = "to", value_name = "PROTOCOL@LINK", value_parser = options::output)]
     to: Vec<Output>,
     /// How much of the scene, such as 90s; longer than it lasts holds at the end [default: all of it]
@@ -37,6 +37,18 @@ pub struct Arguments {
     /// How long to wait for somebody on the other side; 0 starts at once
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = options::wait)]
     wait: Duration,
+    /// How long the vehicle is held still before the scene at the least, and then until the other side is ready [default: what a target needs]
+    #[arg(long, value_name = "TIME", value_parser = options::rest)]
+    rest: Option<SimTime>,
+    /// Pass the controller's other messages to and from a ground station over UDP
+    #[arg(long, value_name = "ADDR:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:14550", value_parser = options::ground)]
+    qgc: Option<Address>,
+    /// Scene time from which on the other side's estimates are judged
+    #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::rest)]
+    settle: SimTime,
+    /// What is taken out of its estimates first: nothing, or one constant heading, which six axes cannot know
+    #[arg(long, value_name = "none|heading", default_value = "none")]
+    align: Alignment,
     /// Keep the pacing thread to this processor
     #[arg(long, value_name = "N", value_parser = options::processor)]
     cpu: Option<usize>,
@@ -60,14 +72,24 @@ pub struct Arguments {
     command: Vec<String>,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
-    if arguments.scene.is_none() && !arguments.to.is_empty() {
-        return Err(Refusal(format!(
-            "--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones",
-            arguments.to[0].to
-        )));
+/// `--align`.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Alignment {
+    None,
+    Heading,
+}
+
+impl From<Alignment> for Align {
+    fn from(alignment: Alignment) -> Align {
+        match alignment {
+            Alignment::None => Align::None,
+            Alignment::Heading => Align::Heading,
+        }
     }
-    let plan = Plan::load(arguments.scene.as_deref().unwrap_or(DEMO_SCENE), &arguments.set)?;
+}
+
+pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    let plan = plan(arguments)?;
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
     let demonstration = outputs.is_empty();
     let mut outputs = if demonstration { vec![demo_output()] } else { outputs };
@@ -80,26 +102,32 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     limits.iter().try_for_each(|limit| limit.check(&as_json))?;
     refuse(arguments, &plan, &outputs)?;
     let plan = Arc::new(plan);
+    let estimator = estimator(demonstration, &outputs);
+    let fed = outputs.iter().any(|output| output.to.target.is_some());
     let job = Job {
         plan: plan.clone(),
         end: arguments.span.unwrap_or(plan.duration),
+        rest: rest(arguments.rest, &outputs),
+        ground: ground(arguments.qgc.clone(), &outputs)?,
+        judging: Judging { align: arguments.align.into(), settle: arguments.settle },
         outputs,
         speed: arguments.speed,
         wait: arguments.wait,
         command: arguments.command.clone(),
         keep_stdout: arguments.json,
-        estimator: if demonstration { "vqf".into() } else { "firmware".into() },
         cpu: arguments.cpu,
         watch: None,
         tap: None,
     };
     let (outcome, received) = play(job, &plan, demonstration)?;
     fill(&mut report, &outcome, arguments.speed);
+    report.attitude =
+        outcome.attitude.clone().map(|figures| AttitudeReport { estimator: estimator.clone(), figures });
     report.faults = [plan.faults_until(outcome.played), outcome.faults.clone()].concat();
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
-    judge(&mut report, &limits, outcome.command)?;
+    judge(&mut report, &limits, outcome.command, fed)?;
     eprint!("{}", summary::run(&report, &outcome));
     if let Some(dir) = &arguments.out {
         super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
@@ -114,8 +142,50 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     })
 }
 
+/// The scene that is asked for, or the first target's, or the demonstration's.
+fn plan(arguments: &Arguments) -> Result<Plan, Refusal> {
+    let target = arguments.to.iter().find_map(|output| output.to.target);
+    let (scene, settings) = match (&arguments.scene, target, arguments.to.first()) {
+        (Some(scene), ..) => (scene.as_str(), &[][..]),
+        (None, Some(target), _) => (target.scene, target.settings),
+        (None, None, Some(output)) => {
+            return Err(Refusal(format!(
+                "--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones",
+                output.to
+            )));
+        }
+        (None, None, None) => (DEMO_SCENE, &[][..]),
+    };
+    let settings = settings.iter().map(|setting| setting.to_string());
+    Ok(Plan::load(scene, &settings.chain(arguments.set.iter().cloned()).collect::<Vec<_>>())?)
+}
+
+/// How long the vehicle is held still first: as told, or what the most demanding target needs.
+fn rest(told: Option<SimTime>, outputs: &[Output]) -> Option<SimTime> {
+    let needed = outputs.iter().filter_map(|output| Some(output.to.target?.rest)).max();
+    told.or(needed)
+}
+
+/// A ground station's address, and the output that it listens in on.
+fn ground(address: Option<Address>, outputs: &[Output]) -> Result<Option<(Address, usize)>, Refusal> {
+    let Some(address) = address else { return Ok(None) };
+    let with = outputs.iter().position(|output| output.to.protocol == Protocol::Mavlink);
+    with.map(|with| Some((address, with))).ok_or_else(|| {
+        Refusal(
+            "--qgc passes on MAVLink, and no output speaks it: add, for example, --to px4@/dev/ttyACM0"
+                .into(),
+        )
+    })
+}
+
+/// What the estimator on the other side is called.
+fn estimator(demonstration: bool, outputs: &[Output]) -> String {
+    let target = outputs.iter().find_map(|output| output.to.target);
+    target.map_or(if demonstration { "vqf" } else { "firmware" }, |target| target.name).into()
+}
+
 fn demo_output() -> Output {
-    Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None, baud: None } })
+    Output::to(Destination::new(Protocol::Mpu, Address::Pty { path: None, baud: None }))
 }
 
 /// What cannot go together, before anything is opened.
@@ -170,7 +240,7 @@ fn refuses(output: &Output) -> bool {
 
 fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {
     let bar = Bar::new(job.end);
-    let mut firmware = None;
+    let (mut firmware, mut held) = (None, false);
     let outcome = session::run(job, &mut |event| match event {
         Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
         Event::Ready(name) => {
@@ -181,6 +251,13 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
                 firmware = Some(Firmware::start(path, plan));
             }
         }
+        Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
+        Event::Silent(name) => bar.line(&format!("waiting for the controller on {name} to speak")),
+        Event::Still => {
+            held = true;
+            bar.line("holding still until the other side is ready");
+        }
+        Event::Started if held => bar.line("the scene starts"),
         Event::Started => {}
         Event::Progress(progress) => bar.live(&progress),
     });
@@ -202,6 +279,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         made: 0,
         sent: 0,
         dropped: 0,
+        replaced: 0,
         queued: 0,
         late_us: Some(Late::default()),
         interval_us: Some(Interval::default()),
@@ -222,19 +300,27 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         utilisation: None,
         paced_baud: None,
         gaps: Some(Gaps::default()),
+        replies: 0,
         faults: output.faults.iter().map(|fault| (fault.kind.name(), 0)).collect(),
         crc_errors: 0,
         lost_seq: None,
         broken: None,
     };
-    let score = Score {
-        estimator: String::new(),
+    let figures = Figures {
         samples: 0,
         rms_deg: 0.0,
         max_deg: 0.0,
         inclination_rms_deg: 0.0,
+        inclination_max_deg: 0.0,
         heading_rms_deg: 0.0,
+        heading_max_deg: 0.0,
         delay_ms: None,
+        delay_known: DelayKnown::Unknown,
+        delay_doubt: None,
+        clock_offset_s: Some(0.0),
+        heading_offset_deg: Some(0.0),
+        looks: None,
+        looks_rms_deg: None,
     };
     Report {
         version: env!("CARGO_PKG_VERSION").into(),
@@ -243,13 +329,14 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         scene: plan.name.clone(),
         seed: plan.seed,
         duration_s: 0.0,
+        rest_s: 0.0,
         stretched_s: 0.0,
         speed: Value::Null,
         faults: plan.faults_until(SimTime::FOREVER),
         host: host(false, false, Some(PacingReport::default())),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),
-        attitude: Some(score),
+        attitude: Some(AttitudeReport { estimator: String::new(), figures }),
     }
 }
 
@@ -263,6 +350,7 @@ pub fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -
 
 pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.duration_s = outcome.played.seconds();
+    report.rest_s = outcome.rest_s;
     report.stretched_s = outcome.stretched_s;
     report.speed = match speed {
         Speed::Times(times) => times.into(),
@@ -271,12 +359,18 @@ pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.host = host(outcome.realtime, outcome.memory_locked, outcome.pacing);
     report.sensors = outcome.sensors.clone();
     report.links = outcome.links.clone();
-    report.attitude = outcome.score.clone();
 }
 
-/// Losses, broken limits, and a command that failed.
-pub(super) fn judge(report: &mut Report, limits: &[Limit], command: Option<i32>) -> Result<(), Refusal> {
-    let lost = report.sensors.iter().filter(|sensor| sensor.dropped > 0);
+/// Losses, broken limits, and a command that failed; `fed` says that a controller chose how many packets it gets.
+pub(super) fn judge(
+    report: &mut Report,
+    limits: &[Limit],
+    command: Option<i32>,
+    fed: bool,
+) -> Result<(), Refusal> {
+    // A controller that asks for fewer packets than there are samples loses none.
+    let excused = |sensor: &SensorReport| if fed { sensor.replaced } else { 0 };
+    let lost = report.sensors.iter().filter(|sensor| sensor.dropped > excused(sensor));
     let mut failed: Vec<_> =
         lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
     let broken =

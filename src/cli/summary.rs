@@ -1,6 +1,7 @@
 //! The report of a run as a person reads it.
 
-use crate::report::{HeardReport, Report, number, table};
+use crate::report::{AttitudeReport, HeardReport, Report, number, table};
+use crate::score::DelayKnown;
 use crate::session::Outcome;
 use crate::time::SimTime;
 
@@ -17,9 +18,17 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     text += &sensors(report);
     text.push('\n');
     text += &links(report);
+    if report.rest_s > 0.0 {
+        text += &format!(
+            "held still for {} s before the scene: those samples are in the counts\n",
+            number(report.rest_s)
+        );
+    }
     if report.stretched_s > 0.0 {
-        text +=
-            &format!("scene time stood still for {} s while a link was full\n", number(report.stretched_s));
+        text += &format!(
+            "scene time stood still for {} s while a link was full or a controller took its time\n",
+            number(report.stretched_s)
+        );
     }
     for (link, gaps) in report.links.iter().filter_map(|link| Some((link, link.gaps?))) {
         text += &format!(
@@ -31,29 +40,39 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             gaps.samples
         );
     }
-    if let Some(score) = &report.attitude {
-        let delay = score
-            .delay_ms
-            .map_or(String::new(), |delay| format!(", answers {} ms after their sample", number(delay)));
-        text += &format!(
-            "\nattitude by {}: {} deg RMS against the truth (inclination {}, heading {}), {} deg at most; {} answers{delay}\n",
-            score.estimator,
-            number(score.rms_deg),
-            number(score.inclination_rms_deg),
-            number(score.heading_rms_deg),
-            number(score.max_deg),
-            score.samples,
-        );
-    }
-    for link in report.links.iter().filter(|link| !link.faults.is_empty()) {
-        let counts: Vec<_> = link.faults.iter().map(|(kind, packets)| format!("{kind} {packets}")).collect();
-        text += &format!("packets that faults acted on, {}: {}\n", link.name, counts.join(", "));
+    if let Some(attitude) = &report.attitude {
+        text += &known(attitude);
     }
     for fault in &report.faults {
         text += &format!("fault: {fault}\n");
     }
     for failure in &report.failed {
         text += &format!("FAILED: {failure}\n");
+    }
+    text
+}
+
+/// How well somebody knew the attitude.
+fn known(AttitudeReport { estimator, figures }: &AttitudeReport) -> String {
+    let delay = match (figures.delay_ms, figures.delay_known, figures.delay_doubt) {
+        (Some(ms), DelayKnown::Echoed, _) => format!(", answers {} ms after their sample", number(ms)),
+        (Some(ms), ..) => format!(", answers about {} ms late", number(ms)),
+        (None, _, Some(doubt)) => format!(", their delay not known: {doubt}"),
+        (None, ..) => String::new(),
+    };
+    let mut text = format!(
+        "\nattitude by {estimator}: {} deg RMS against the truth (inclination {}, heading {}), {} deg at most; {} answers{delay}\n",
+        number(figures.rms_deg),
+        number(figures.inclination_rms_deg),
+        number(figures.heading_rms_deg),
+        number(figures.max_deg),
+        figures.samples,
+    );
+    if let Some(looks) = &figures.looks {
+        let without = figures
+            .looks_rms_deg
+            .map_or(String::new(), |rms| format!(" (without that {} deg RMS)", number(rms)));
+        text += &format!("the estimate looks {looks}{without}\n");
     }
     text
 }

@@ -13,7 +13,7 @@ use crate::dataset::Folder;
 use crate::link::Address;
 use crate::report::Limit;
 use crate::scene::{Destination, Output, Plan};
-use crate::session::{self, Event, Job, Outcome, Speed, Tap, Watch};
+use crate::session::{self, Event, Job, Judging, Outcome, Speed, Tap, Watch};
 use crate::time::{NANOS, Rate, SimTime};
 use crate::wire::{self, Protocol};
 use collector::Collector;
@@ -92,9 +92,7 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
 
 /// The one link that is measured.
 fn output(arguments: &Arguments, plan: &Plan) -> Result<Output, Refusal> {
-    let on_a_pty = || {
-        Output::to(Destination { protocol: Protocol::Mpu, address: Address::Pty { path: None, baud: None } })
-    };
+    let on_a_pty = || Output::to(Destination::new(Protocol::Mpu, Address::Pty { path: None, baud: None }));
     let output = match (&arguments.to, plan.outputs.as_slice()) {
         (Some(to), _) => to.clone(),
         (None, []) => on_a_pty(),
@@ -153,12 +151,14 @@ fn measure(
     let tap = arrivals.take_if(|_| far == Far::Loopback).map(|arrivals| tap(arrivals, heard.clone()));
     let job = Job {
         end: arguments.span,
+        rest: None,
+        ground: None,
         outputs: vec![output],
         speed: Speed::Times(1.0),
         wait: WAIT,
         command: Vec::new(),
         keep_stdout: arguments.json,
-        estimator: String::new(),
+        judging: Judging::default(),
         cpu: arguments.cpu,
         watch: Some(Watch { clock, slice: SLICE, rate, records }),
         tap,
@@ -175,7 +175,7 @@ fn measure(
                 reader = Some(Reader::start(path.into(), arrivals));
             }
         }
-        Event::Started => {}
+        Event::Ground(_) | Event::Silent(_) | Event::Still | Event::Started => {}
         Event::Progress(progress) => bar.live(&progress),
     });
     bar.clear();

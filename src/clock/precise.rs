@@ -45,6 +45,11 @@ impl<C: Clock> Clock for Precise<C> {
         self.slept = self.clock.now();
     }
 
+    fn doze_until(&mut self, t: i64) {
+        self.clock.doze_until(t);
+        self.slept = self.clock.now();
+    }
+
     fn spin_until(&mut self, t: i64) {
         self.clock.spin_until(t);
     }

@@ -3,6 +3,7 @@
 use super::Clock;
 use rustix::thread::{ClockId, clock_nanosleep_absolute};
 use rustix::time::{Timespec, clock_gettime};
+use std::time::Duration;
 
 /// `CLOCK_MONOTONIC` from the moment it was started; its waits are bare absolute sleeps.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +27,10 @@ impl Clock for WallClock {
         if t > self.now() {
             sleep_until(self.start + t);
         }
+    }
+
+    fn doze_until(&mut self, t: i64) {
+        std::thread::park_timeout(Duration::from_nanos((t - self.now()).max(0) as u64));
     }
 }
 

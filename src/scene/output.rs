@@ -2,44 +2,69 @@
 
 use super::section::Section;
 use super::suggest;
+use super::target::{TARGETS, Target};
 use crate::link::Address;
 use crate::sensor::SensorPlan;
 use crate::wire::{self, Extra, Extras, Layout, Protocol, Version};
 use std::fmt;
 use std::str::FromStr;
 
-/// `PROTOCOL@LINK`.
+/// `PROTOCOL@LINK`, or `TARGET@LINK`, or a target alone that has a link of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Destination {
     /// What the packets look like.
     pub protocol: Protocol,
     /// Where they go.
     pub address: Address,
+    /// The flight controller that was named in place of a protocol.
+    pub target: Option<&'static Target>,
+}
+
+impl Destination {
+    /// A protocol on a link.
+    pub fn new(protocol: Protocol, address: Address) -> Destination {
+        Destination { protocol, address, target: None }
+    }
+
+    /// The same packets and the same controller, on the link called `link`.
+    pub fn at(&self, link: impl fmt::Display) -> String {
+        let what = self.target.map_or(self.protocol.name(), |target| target.name);
+        format!("{what}@{link}")
+    }
 }
 
 impl FromStr for Destination {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Destination, String> {
-        let names = Protocol::ALL.map(Protocol::name);
-        let Some((protocol, address)) = text.split_once('@') else {
+        let targets = TARGETS.iter().map(|target| target.name);
+        let names: Vec<_> = Protocol::ALL.map(Protocol::name).into_iter().chain(targets).collect();
+        let alone = |text| Target::from_name(text).and_then(|target| Some((target.name, target.link?)));
+        let Some((name, address)) = text.split_once('@').or_else(|| alone(text)) else {
+            let example = if Target::from_name(text).is_some() { text } else { "mpu" };
+            let link = if example == text { "/dev/ttyACM0" } else { "pty" };
             return Err(format!(
-                "`{text}` is no PROTOCOL@LINK: write, for example, mpu@pty (protocols: {})",
+                "`{text}` is no PROTOCOL@LINK: write, for example, {example}@{link} (protocols: {})",
                 names.join(", ")
             ));
         };
-        let Some(protocol) = Protocol::from_name(protocol) else {
-            let near = suggest::did_you_mean(protocol, names);
-            return Err(format!("`{protocol}` is no protocol of this version ({}){near}", names.join(", ")));
+        let target = Target::from_name(name);
+        let Some(protocol) = target.map(|target| target.protocol).or_else(|| Protocol::from_name(name))
+        else {
+            let near = suggest::did_you_mean(name, names.iter().copied());
+            return Err(format!("`{name}` is no protocol of this version ({}){near}", names.join(", ")));
         };
-        let address = address.parse::<Address>().map_err(|error| error.to_string())?;
-        Ok(Destination { protocol, address })
+        let mut address = address.parse::<Address>().map_err(|error| error.to_string())?;
+        if let Some(baud) = target.and_then(|target| target.baud) {
+            address = address.or_baud(baud);
+        }
+        Ok(Destination { protocol, address, target })
     }
 }
 
 impl fmt::Display for Destination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}@{}", self.protocol.name(), self.address)
+        f.write_str(&self.at(&self.address))
     }
 }
 
@@ -90,13 +115,11 @@ pub struct Output {
 impl Output {
     /// An output of the command line: nothing but its destination.
     pub fn to(to: Destination) -> Output {
-        Output {
-            to,
-            wire: wire::Options::default(),
-            overload: Overload::default(),
-            force: false,
-            faults: Vec::new(),
-        }
+        let wire = wire::Options {
+            controller: to.target.map(|target| target.controller),
+            ..wire::Options::default()
+        };
+        Output { to, wire, overload: Overload::default(), force: false, faults: Vec::new() }
     }
 }
 
@@ -130,7 +153,8 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     }
     let to = section.text("to", None)?;
     let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
-    let wire = wire::Options { layout, version, extras, ..wire::Options::default() };
+    let controller = to.target.map(|target| target.controller);
+    let wire = wire::Options { layout, version, extras, controller };
     for key in ["version", "messages"] {
         if section.has(key) && to.protocol != Protocol::Mavlink {
             section.mistake(key, format!("is for `mavlink`, not for `{}`", to.protocol.name()));
@@ -176,7 +200,7 @@ fn mavlink(section: &Section<'_>) -> (Version, Extras) {
 
 /// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.
 fn paced(section: &Section<'_>, to: &Destination) {
-    let example = || Destination { protocol: to.protocol, address: to.address.clone().at_baud(115_200) };
+    let example = || to.at(to.address.clone().at_baud(115_200));
     match to.address {
         Address::Pty { baud: Some(_), .. } => {}
         Address::Pty { .. } => {

@@ -1,17 +1,17 @@
-//! The control side of a run: opens links, waits for peers, starts the threads, listens, ends cleanly.
+//! The control side of a run: opens links, starts the threads, listens, ends cleanly.
 
-use super::answers::{self, Ear, Heard};
+use super::answers::Heard;
 use super::granted::Granted;
-use super::links::{self, Account, LOOK, Lookout};
-use super::pacer::{Left, Pacer};
-use super::producer::{self, Made};
-use super::tally::{self, LinkTally};
+use super::hold::Hold;
+use super::links::{LOOK, Lookout};
+use super::lockstep::{self, Step};
+use super::pacer::Pacer;
+use super::producer::{self, Encoders, Made, Task};
+use super::talk::Talk;
 use super::watch::Watching;
-use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command};
+use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command, ears};
 use crate::clock::{Clock, Policy, Precise, WallClock};
-use crate::link::Link;
-use crate::report::{LinkReport, PacingReport};
-use crate::sensor::ByKind;
+use crate::link::{Link, Sender};
 use crate::time::SimTime;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -24,14 +24,14 @@ use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::oneshot;
 use tokio::time::Instant;
 
-/// Packets made ahead, 2 MB: about a second of the fastest sensors, and seven at 1 kHz.
+/// Packets made ahead, 2.6 MB: about a second of the fastest sensors, and seven at 1 kHz.
 const RING: usize = 8192;
-/// From the start of the pacing thread to scene time 0.
+/// From the start of the pacing thread to stream time 0.
 const LEAD: i64 = 5_000_000;
 /// Between two reports of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
-/// For answers that are still on their way when the last packet is out.
-const LAST_ANSWERS: Duration = Duration::from_millis(200);
+/// Between two looks at what is due by itself in a conversation.
+pub(super) const TICK: Duration = Duration::from_millis(10);
 
 /// At full speed nothing moves without a reader; one who is away for so long has left for good.
 const ABSENCE: Duration = Duration::from_secs(5);
@@ -48,32 +48,28 @@ fn run_with(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Resul
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime =
         runtime.map_err(|source| SessionError::System { doing: "start the control loop", source })?;
-    tokio::task::LocalSet::new().block_on(&runtime, Run::new(job, absence).go(on))
+    tokio::task::LocalSet::new().block_on(&runtime, Run::go(job, absence, on))
 }
 
-struct Run {
-    job: Job,
-    shared: Arc<Shared>,
-    clock: WallClock,
-    heard: Rc<RefCell<Heard>>,
-    interrupted: bool,
+pub(super) struct Run {
+    pub job: Job,
+    pub shared: Arc<Shared>,
+    pub clock: WallClock,
+    pub talk: Rc<RefCell<Talk>>,
+    pub interrupted: bool,
     /// The command's exit code, once it has ended by itself.
-    ended: Option<i32>,
+    pub ended: Option<i32>,
     /// Whether what comes back on the first link goes to the job's tap.
-    tapped: bool,
+    pub tapped: bool,
     /// Tasks that read what comes back; each holds its link open.
-    ears: Vec<tokio::task::JoinHandle<()>>,
+    pub ears: Vec<tokio::task::JoinHandle<()>>,
     absence: Duration,
     /// The link whose reader has left for good.
-    left: Option<usize>,
-    lookout: Lookout,
-}
-
-/// What ended a wait.
-enum Woke<T> {
-    Done(T),
-    Interrupted,
-    CommandEnded,
+    pub left: Option<usize>,
+    pub lookout: Lookout,
+    hold: Hold,
+    /// Why it ended before the scene began.
+    pub failed: Option<SessionError>,
 }
 
 /// Since when no packet has moved because a reader is gone.
@@ -94,7 +90,7 @@ impl Absence {
     }
 }
 
-struct Signals(Signal, Signal);
+pub(super) struct Signals(Signal, Signal);
 
 impl Signals {
     fn new() -> Result<Signals, SessionError> {
@@ -103,16 +99,16 @@ impl Signals {
         Ok(Signals(on(SignalKind::interrupt())?, on(SignalKind::terminate())?))
     }
 
-    async fn recv(&mut self) {
+    pub(super) async fn recv(&mut self) {
         tokio::select! { _ = self.0.recv() => {}, _ = self.1.recv() => {} }
     }
 }
 
 /// The command, if there is one; without one, its end never comes.
-struct Program(Option<Child>);
+pub(super) struct Program(pub Option<Child>);
 
 impl Program {
-    async fn ended(&mut self) -> i32 {
+    pub(super) async fn ended(&mut self) -> i32 {
         match &mut self.0 {
             Some(child) => child.wait().await.map_or(1, command::code),
             None => std::future::pending().await,
@@ -121,129 +117,131 @@ impl Program {
 }
 
 impl Run {
-    fn new(job: Job, absence: Duration) -> Run {
-        let heard = Heard { damaged: vec![0; job.outputs.len()], ..Heard::default() };
-        let shared = Shared::default();
-        shared.start_ns.store(-1, Ordering::Relaxed);
+    fn new(job: Job, absence: Duration, senders: Vec<Sender>) -> Run {
+        let shared = Arc::new(Shared::before(job.rest));
+        let lockstep = job.outputs.iter().any(lockstep::in_lockstep);
+        let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
+        let talk = Talk::new(&job.outputs, senders, heard);
         let lookout = Lookout::new(job.outputs.len());
         let clock = job.watch.as_ref().map_or_else(WallClock::start, |watch| watch.clock);
+        let hold = Hold::new(job.rest);
         Run {
             job,
             lookout,
-            shared: Arc::new(shared),
+            shared,
             clock,
-            heard: Rc::new(RefCell::new(heard)),
+            talk: Rc::new(RefCell::new(talk)),
             interrupted: false,
             ended: None,
             tapped: false,
             ears: Vec::new(),
             absence,
             left: None,
+            hold,
+            failed: None,
         }
     }
 
-    async fn go(mut self, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
+    async fn go(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
         let mut signals = Signals::new()?;
         let mut links = Vec::new();
-        for output in &self.job.outputs {
+        for output in &job.outputs {
             links.push(Link::open(&output.to.address).await?);
         }
-        for (link, output) in links.iter_mut().zip(&self.job.outputs) {
+        let senders = links.iter_mut().map(Link::sender).collect();
+        let mut run = Run::new(job, absence, senders);
+        run.open_ground(on).await?;
+        for (link, output) in links.iter().zip(&run.job.outputs) {
             link.notices().iter().for_each(|notice| on(Event::Notice(notice.clone())));
-            on(Event::Ready(&format!("{}@{}", output.to.protocol.name(), link.name())));
+            on(Event::Ready(&output.to.at(link.name())));
         }
         let names: Vec<String> = links.iter().map(|link| link.name().to_string()).collect();
         let (ring, consumer) = rtrb::RingBuffer::new(RING);
-        let producer = self.start_producer(ring);
+        let mut ring = Some(ring);
+        // What does not depend on what the other side says is made while it is waited for.
+        let mut producer = None;
+        if run.talk.borrow().silent().is_none() {
+            producer = ring.take().map(|ring| run.start_producer(ring));
+        }
         let mut program = Program(None);
-        if !self.job.command.is_empty() {
-            program.0 = Some(command::start(&self.job.command, &names[0], self.job.keep_stdout)?);
+        if !run.job.command.is_empty() {
+            program.0 = Some(command::start(&run.job.command, &names[0], run.job.keep_stdout)?);
         }
-        let here = self.wait_for_peers(&mut links, &mut signals, &mut program).await;
+        let mut here = run.wait_for_peers(&mut links, &mut signals, &mut program).await;
+        if matches!(here, Ok(true)) {
+            run.listen(&mut links);
+            here = run.wait_to_be_heard(on, &names, &mut signals, &mut program).await;
+        }
         if !matches!(here, Ok(true)) {
-            self.shared.stop.store(true, Ordering::Relaxed);
+            run.shared.stop.store(true, Ordering::Relaxed);
             drop(consumer);
-            let _ = producer.join();
+            producer.map(JoinHandle::join);
             here?;
-            return Ok(self.never_started(names));
+            return Ok(run.never_started(names));
         }
-        on(Event::Started);
-        let senders = links.iter_mut().map(Link::sender).collect();
-        self.listen(&mut links);
-        let policies = self.job.outputs.iter().map(|output| output.overload);
-        let clock = Precise::new(self.clock, Policy::Adaptive);
-        let mut pacer = Pacer::new(clock, consumer, senders, policies, self.job.speed);
-        pacer.watching = self.job.watch.take().map(Watching::new);
-        let (pacing, mut notices, mut done) = self.start_pacer(pacer)?;
-        self.attend(on, &links, &mut signals, &mut program, &mut notices, &mut done).await;
+        run.compare_rates(on);
+        let producer = match (producer, ring) {
+            (None, Some(ring)) => run.start_producer(ring),
+            (producer, _) => producer.unwrap_or_else(|| unreachable!("the ring went to a producer")),
+        };
+        on(if run.job.rest.is_some() { Event::Still } else { Event::Started });
+        let pacer = run.pacer(consumer);
+        let (pacing, mut notices, mut done) = run.start_pacer(pacer)?;
+        run.talk.borrow_mut().pacing = Some(pacing.thread().clone());
+        run.attend(on, &links, &names, &mut signals, &mut program, &mut notices, &mut done).await;
         let (mut pacer, granted) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        let made = self.collect(producer, &mut pacer);
-        self.finish(Ended { pacer, links, program, names, granted, made }).await
+        let made = run.collect(producer, &mut pacer);
+        run.finish(Ended { pacer, links, program, names, granted, made }).await
     }
 
-    fn start_producer(&self, ring: rtrb::Producer<Item>) -> JoinHandle<Made> {
-        let (plan, outputs, end, shared) =
-            (self.job.plan.clone(), self.job.outputs.clone(), self.job.end, self.shared.clone());
-        thread::spawn(move || producer::produce(&plan, &outputs, end, ring, &shared))
+    /// Opens the way to a ground station, and listens to it.
+    async fn open_ground(&mut self, on: &mut dyn FnMut(Event<'_>)) -> Result<(), SessionError> {
+        let Some((address, output)) = &self.job.ground else { return Ok(()) };
+        let mut link = Link::open(address).await?;
+        self.talk.borrow_mut().bridge(link.sender(), *output);
+        on(Event::Ground(link.name()));
+        if let Some(receiver) = link.receiver() {
+            let ear = ears::listen_to_ground(receiver, self.talk.clone());
+            self.ears.push(tokio::task::spawn_local(ear));
+        }
+        Ok(())
     }
 
-    /// True when somebody is on every link; false when the user or the command ended the wait.
-    async fn wait_for_peers(
-        &mut self,
-        links: &mut [Link],
-        signals: &mut Signals,
-        program: &mut Program,
-    ) -> Result<bool, SessionError> {
-        if self.job.wait.is_zero() {
-            return Ok(true);
-        }
-        let waited = self.job.wait;
-        let deadline = Instant::now() + waited;
-        for link in links {
-            let name = link.name().to_string();
-            let woke = tokio::select! {
-                peer = tokio::time::timeout_at(deadline, link.peer()) => Woke::Done(peer),
-                () = signals.recv() => Woke::Interrupted,
-                code = program.ended() => {
-                    self.ended = Some(code);
-                    Woke::CommandEnded
-                }
-            };
-            match woke {
-                Woke::Done(Ok(peer)) => peer?,
-                Woke::Done(Err(_)) => return Err(SessionError::Nobody { link: name, waited }),
-                Woke::Interrupted => {
-                    self.interrupted = true;
-                    return Ok(false);
-                }
-                Woke::CommandEnded => return Ok(false),
-            }
-        }
-        Ok(true)
+    fn start_producer(&self, ring: rtrb::Producer<Item>) -> JoinHandle<(Made, Encoders)> {
+        let (plan, outputs, shared) = (self.job.plan.clone(), self.job.outputs.clone(), self.shared.clone());
+        let (end, rest, peers) = (self.job.end, self.job.rest, self.talk.borrow().peers());
+        thread::spawn(move || {
+            let task = Task { plan: &plan, outputs: &outputs, peers: &peers, end, rest };
+            producer::produce(task, ring, &shared)
+        })
     }
 
     fn listen(&mut self, links: &mut [Link]) {
         for (i, link) in links.iter_mut().enumerate() {
             let Some(receiver) = link.receiver() else { continue };
             if let Some(tap) = self.job.tap.take_if(|_| i == 0) {
-                self.ears.push(tokio::task::spawn_local(answers::tapped(receiver, tap)));
+                self.ears.push(tokio::task::spawn_local(ears::tapped(receiver, tap)));
                 self.tapped = true;
                 continue;
             }
-            let ear = Ear {
-                plan: self.job.plan.clone(),
-                shared: self.shared.clone(),
-                clock: self.clock,
-                speed: self.job.speed,
-                heard: self.heard.clone(),
-            };
-            self.ears.push(tokio::task::spawn_local(ear.listen(
-                i,
-                self.job.outputs[i].to.protocol,
-                self.job.outputs[i].wire,
-                receiver,
-            )));
+            let ear = ears::listen(i, receiver, self.talk.clone(), self.clock);
+            self.ears.push(tokio::task::spawn_local(ear));
         }
+    }
+
+    /// The pacing thread's work, with the links.
+    fn pacer(&mut self, consumer: rtrb::Consumer<Item>) -> Pacer<Precise<WallClock>> {
+        let mut talk = self.talk.borrow_mut();
+        let outputs = &self.job.outputs;
+        let (senders, replies) = (0..outputs.len()).map(|link| talk.hand_over(link)).unzip();
+        let policies = outputs.iter().map(|output| output.overload);
+        let clock = Precise::new(self.clock, Policy::Adaptive);
+        let mut pacer = Pacer::new(clock, consumer, senders, policies, self.job.speed);
+        pacer.watching = self.job.watch.take().map(Watching::new);
+        pacer.replies = replies;
+        let step = |(link, output)| lockstep::in_lockstep(output).then(|| Step::new(talk.took(link)));
+        pacer.steps = outputs.iter().enumerate().map(step).collect();
+        pacer
     }
 
     /// Starts the pacing thread; the channels bring a notice about what it was not allowed, and its end.
@@ -264,11 +262,13 @@ impl Run {
         Ok((thread, notices, done))
     }
 
+    #[expect(clippy::too_many_arguments, reason = "one for each that may end it")]
     /// Reports progress until the pacing thread has ended, or the user, the command or a reader that is gone ends it.
     async fn attend(
         &mut self,
         on: &mut dyn FnMut(Event<'_>),
         links: &[Link],
+        names: &[String],
         signals: &mut Signals,
         program: &mut Program,
         notices: &mut oneshot::Receiver<Option<String>>,
@@ -279,12 +279,17 @@ impl Run {
         }
         let mut ticks = tokio::time::interval(PROGRESS);
         let mut looks = tokio::time::interval(LOOK);
+        let mut beats = tokio::time::interval(TICK);
         // Paced, a packet that nobody reads is dropped and counted; and a command ends the run by ending.
         let waits = self.job.speed == Speed::Max && self.job.command.is_empty();
         let mut absence = Absence { packets: 0, since: Instant::now() };
         loop {
             tokio::select! {
                 _ = &mut *done => break,
+                _ = beats.tick() => {
+                    self.tick(on);
+                    self.look_on(on, names);
+                }
                 _ = looks.tick() => self.lookout.look(links, |notice| on(Event::Notice(notice))),
                 _ = ticks.tick() => {
                     let progress = self.progress();
@@ -309,144 +314,46 @@ impl Run {
     }
 
     fn progress(&self) -> Progress {
+        let stream = SimTime(self.shared.stream_ns.load(Ordering::Relaxed));
+        let scene = self.shared.scene_time(stream);
         Progress {
-            t: SimTime(self.shared.scene_ns.load(Ordering::Relaxed)),
+            t: scene.unwrap_or(stream),
+            still: scene.is_none(),
             packets: self.shared.packets.load(Ordering::Relaxed),
             dropped: self.shared.dropped.load(Ordering::Relaxed),
-            error_deg: self.heard.borrow().newest_deg,
+            error: self.talk.borrow().heard.newest,
         }
     }
 
-    /// Joins the producer, emptying the ring into the count of what was left while it ends.
-    fn collect(&self, producer: JoinHandle<Made>, pacer: &mut Pacer<Precise<WallClock>>) -> (Made, Left) {
-        self.shared.stop.store(true, Ordering::Relaxed);
-        let mut left = Left::nothing(self.job.outputs.len());
-        loop {
-            // Asked before emptying: what the producer pushed last is then in the ring.
-            let over = producer.is_finished();
-            left += pacer.left();
-            if over {
-                break;
-            }
-            thread::sleep(Duration::from_micros(100));
-        }
-        (producer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), left)
-    }
-
-    /// Lets the other side take what was sent, closes everything, and adds up.
-    async fn finish(mut self, ended: Ended) -> Result<Outcome, SessionError> {
-        let Ended { mut pacer, links, program, names, granted, made: (mut made, left) } = ended;
-        for (sender, gone) in pacer.senders.iter_mut().zip(&mut pacer.gone) {
-            if let Err(error) = sender.finish() {
-                gone.get_or_insert(error.kind());
+    /// Whether the scene may begin, has begun, or is not waited for any more.
+    fn look_on(&mut self, on: &mut dyn FnMut(Event<'_>), names: &[String]) {
+        let unready = {
+            let talk = self.talk.borrow();
+            talk.unready().map(|link| (names[link].clone(), talk.what_came(link)))
+        };
+        match self.hold.look(&self.shared, unready, self.job.wait) {
+            Ok(true) => on(Event::Started),
+            Ok(false) => {}
+            Err(error) => {
+                self.failed.get_or_insert(error);
+                self.shared.stop.store(true, Ordering::Relaxed);
             }
         }
-        let pacing =
-            pacer.effort.share().filter(|_| self.job.speed != Speed::Max).map(|share| PacingReport {
-                spin_us: pacer.clock.margin().ns() as f64 / 1000.0,
-                pacing_cpu: share,
-                pinned_cpu: granted.cpu,
-            });
-        let (mut tallies, gone, stretched) = (pacer.tallies, pacer.gone, pacer.stretched);
-        let now = self.clock.now();
-        tallies.iter_mut().for_each(|tally| tally.gaps.end(now));
-        drop(pacer.senders);
-        if self.tapped || !self.heard.borrow().estimates.is_empty() {
-            tokio::time::sleep(LAST_ANSWERS).await;
-        }
-        for ear in &self.ears {
-            ear.abort();
-        }
-        for ear in std::mem::take(&mut self.ears) {
-            // Only when its task is gone does a link's descriptor close, and the other side see the end.
-            let _ = ear.await;
-        }
-        for link in links {
-            link.close().await;
-        }
-        let command = match (self.ended, program.0) {
-            (Some(code), _) => Some(code),
-            (None, Some(child)) => command::end(child).await,
-            (None, None) => None,
-        };
-        let sum = |rows: &[ByKind<u64>]| -> ByKind<u64> {
-            std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum())
-        };
-        let (total, waiting) = (sum(&made.samples), sum(&made.waiting));
-        let queued = std::array::from_fn(|i| left.samples[i] + waiting[i]);
-        let paced = self.job.speed != Speed::Max;
-        let played = self.played(&gone);
-        made.faults.iter_mut().flatten().for_each(|acts| acts.settle(played));
-        let heard = self.heard.borrow();
-        Ok(Outcome {
-            played,
-            interrupted: self.interrupted,
-            stretched_s: stretched as f64 * 1e-9,
-            realtime: granted.priority,
-            memory_locked: granted.memory,
-            pacing,
-            watched: pacer.watching.map(|watching| watching.seen),
-            sensors: tally::sensors(&self.job.plan, &tallies, total, queued, paced),
-            links: self.link_reports(&tallies, &gone, names, &made, &left),
-            faults: links::fired(&self.job.outputs, &made),
-            score: heard.scorer.score(&self.job.estimator),
-            estimates: heard.estimates.clone(),
-            command,
-        })
-    }
-
-    /// The end if all was played, else where the last packet was due.
-    fn played(&self, gone: &[Option<std::io::ErrorKind>]) -> SimTime {
-        let stopped = self.interrupted || self.ended.is_some() || self.left.is_some();
-        let cut_short = stopped || !gone.contains(&None);
-        // An end is exclusive: a nanosecond on, so that the last packet is within.
-        let last = SimTime(self.shared.scene_ns.load(Ordering::Relaxed) + 1);
-        if cut_short { last.min(self.job.end) } else { self.job.end }
-    }
-
-    fn link_reports(
-        &self,
-        tallies: &[LinkTally],
-        gone: &[Option<std::io::ErrorKind>],
-        names: Vec<String>,
-        made: &Made,
-        left: &Left,
-    ) -> Vec<LinkReport> {
-        let damaged = &self.heard.borrow().damaged;
-        let (outputs, lookout, abandoned) = (&self.job.outputs, &self.lookout, self.left);
-        Account { outputs, names, tallies, gone, made, left, lookout, damaged, abandoned }.reports()
-    }
-
-    fn never_started(&self, names: Vec<String>) -> Outcome {
-        let tallies: Vec<_> = names.iter().map(|_| LinkTally::new()).collect();
-        let gone = vec![None; names.len()];
-        Outcome {
-            played: SimTime::ZERO,
-            interrupted: self.interrupted,
-            stretched_s: 0.0,
-            realtime: false,
-            memory_locked: false,
-            pacing: None,
-            watched: None,
-            sensors: tally::sensors(&self.job.plan, &tallies, ByKind::default(), ByKind::default(), false),
-            links: self.link_reports(&tallies, &gone, names, &Made::default(), &Left::nothing(gone.len())),
-            faults: Vec::new(),
-            score: None,
-            estimates: Vec::new(),
-            command: self.ended,
+        if let Some(notice) = self.hold.untaken(&self.shared) {
+            on(Event::Notice(notice));
         }
     }
 }
 
 /// What is left when both threads have ended.
-struct Ended {
-    pacer: Pacer<Precise<WallClock>>,
-    links: Vec<Link>,
-    program: Program,
-    names: Vec<String>,
-    granted: Granted,
-    /// What was made, and what of it is left.
-    made: (Made, Left),
+pub(super) struct Ended {
+    pub pacer: Pacer<Precise<WallClock>>,
+    pub links: Vec<Link>,
+    pub program: Program,
+    pub names: Vec<String>,
+    pub granted: Granted,
+    /// What was made, what of it is left, and who can take leave.
+    pub made: super::finish::Collected,
 }
 
 type Paced = (
@@ -457,6 +364,7 @@ type Paced = (
 
 #[cfg(test)]
 mod tests {
+    use super::super::Judging;
     use super::*;
     use crate::scene::{Output, Plan};
     use std::fs::OpenOptions;
@@ -473,11 +381,13 @@ mod tests {
             end: plan.duration,
             plan,
             outputs: vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())],
+            rest: None,
+            ground: None,
             speed: Speed::Max,
             wait: Duration::from_secs(60),
             command: Vec::new(),
             keep_stdout: false,
-            estimator: String::new(),
+            judging: Judging::default(),
             cpu: None,
             watch: None,
             tap: None,

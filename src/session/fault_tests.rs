@@ -1,8 +1,8 @@
 //! Faults of outputs: what was injected is what a receiver counts, and the account stays whole.
 
 use super::pacer::Pacer;
-use super::producer::{self, Made};
-use super::tests::{accounts_balance, memory, plan};
+use super::producer::Made;
+use super::tests::{accounts_balance, memory, plan, produce};
 use super::*;
 use crate::clock::{Clock, VirtualClock};
 use crate::link::Far;
@@ -81,7 +81,7 @@ impl Ran {
 fn run(scene: &str, speed: Speed) -> Ran {
     let (plan, shared) = (plan(scene), Shared::default());
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-    let mut made = producer::produce(&plan, &plan.outputs[..1], plan.duration, ring, &shared);
+    let mut made = produce(&plan, &plan.outputs[..1], ring, &shared);
     made.faults.iter_mut().flatten().for_each(|acts| acts.settle(plan.duration));
     let (sender, far) = memory(1 << 20);
     let seen = Arc::default();
@@ -220,7 +220,7 @@ fn what_was_done_ahead_of_time_is_not_told() {
     let scene = scene("mpu", &fault("drop", "share = \"100 %\""));
     let (plan, shared) = (plan(&scene), Shared::default());
     let (ring, _consumer) = rtrb::RingBuffer::new(1 << 16);
-    let mut made = producer::produce(&plan, &plan.outputs, plan.duration, ring, &shared);
+    let mut made = produce(&plan, &plan.outputs, ring, &shared);
     let fired = |made: &Made| links::fired(&plan.outputs, made);
     assert_eq!(fired(&made), [""; 0], "nothing has gone out yet");
     made.faults[0][0].settle(SimTime(300 * MS));
@@ -240,12 +240,12 @@ fn the_account_is_whole_wherever_a_run_with_faults_is_stopped() {
     for stop in [0, 150, 205, 400, 699, 701, 950].map(|ms| ms * MS) {
         let shared = Arc::new(Shared::default());
         let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-        let made = producer::produce(&plan, &plan.outputs, plan.duration, ring, &shared);
+        let made = produce(&plan, &plan.outputs, ring, &shared);
         let (sender, far) = memory(1 << 20);
         let clock = Noting { now: 0, far, seen: Arc::default(), stop: Some((stop, shared.clone())) };
         let mut pacer = Pacer::new(clock, consumer, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
         pacer.run(0, &shared);
-        let played = shared.scene_ns.load(Ordering::Relaxed);
+        let played = shared.stream_ns.load(Ordering::Relaxed);
         assert!(
             (stop..stop + 60 * MS).contains(&played),
             "time goes on where nothing is sent: {played} of {stop}"
@@ -260,7 +260,7 @@ fn the_pacing_thread_allocates_nothing_with_faults_either() {
         ["drop", "corrupt", "duplicate", "reorder", "stall", "split"].map(|kind| fault(kind, "")).concat();
     let (plan, shared) = (plan(&scene("mpu", &every)), Shared::default());
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-    producer::produce(&plan, &plan.outputs, plan.duration, ring, &shared);
+    produce(&plan, &plan.outputs, ring, &shared);
     let (sender, _far) = memory(1 << 20);
     let mut pacer = Pacer::new(
         VirtualClock::default(),

@@ -55,6 +55,8 @@ pub(super) struct Account<'a> {
     pub lookout: &'a Lookout,
     /// Damaged answers.
     pub damaged: &'a [u64],
+    /// Packets beside the stream that went out before it began.
+    pub replies: &'a [u64],
     /// The link whose reader left for good.
     pub abandoned: Option<usize>,
 }
@@ -88,6 +90,7 @@ impl Account<'_> {
                 dropped: gaps.dropped,
                 samples: gaps.samples,
             }),
+            replies: tally.replies + self.replies[i],
             faults: by_kind(output, self.made.faults.get(i).map_or(&[], Vec::as_slice)),
             crc_errors: self.damaged[i],
             lost_seq: None,

@@ -145,7 +145,7 @@ impl<C: Clock> Pacer<C> {
     }
 
     /// From scene time `t` on everything is due `by` later.
-    fn shift(&mut self, by: i64, t: i64, shared: &Shared) {
+    pub(super) fn shift(&mut self, by: i64, t: i64, shared: &Shared) {
         if by > 0 {
             self.start += by;
             self.stretched += by;

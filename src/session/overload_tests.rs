@@ -2,8 +2,8 @@
 
 use super::overload::BACKLOG;
 use super::pacer::{Left, Pacer};
-use super::producer::{self, Made};
-use super::tests::{memory, plan};
+use super::producer::Made;
+use super::tests::{memory, plan, produce};
 use super::*;
 use crate::clock::Clock;
 use crate::link::{Far, Sender};
@@ -87,7 +87,7 @@ fn run_until(
     let plan = plan(scene);
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
     let outputs: Vec<_> = policies.iter().map(|_| Output::to("jsonl@pty".parse().unwrap())).collect();
-    let made = producer::produce(&plan, &outputs, plan.duration, ring, shared);
+    let made = produce(&plan, &outputs, ring, shared);
     let (senders, readers): (Vec<Sender>, Vec<Reader>) = policies
         .iter()
         .map(|_| memory(capacity))
@@ -269,13 +269,7 @@ fn a_clock_that_steps_makes_packets_late_and_each_is_told() {
     for (policy, capacity) in POLICIES.iter().flat_map(|policy| [(*policy, 1 << 20), (*policy, 4000)]) {
         let shared = Shared::default();
         let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-        let made = producer::produce(
-            &scene,
-            &[Output::to("jsonl@pty".parse().unwrap())],
-            scene.duration,
-            ring,
-            &shared,
-        );
+        let made = produce(&scene, &[Output::to("jsonl@pty".parse().unwrap())], ring, &shared);
         let (sender, far) = memory(capacity);
         let readers = Arc::new(Mutex::new(vec![Reader { far, received: Vec::new() }]));
         let world = World { now: 0, readers: readers.clone(), act: absent(0, 0) };
@@ -347,7 +341,7 @@ fn no_policy_allocates_in_the_pacing_thread() {
     for policy in POLICIES {
         let (plan, shared) = (plan(SCENE), Shared::default());
         let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-        producer::produce(&plan, &[Output::to("jsonl@pty".parse().unwrap())], plan.duration, ring, &shared);
+        produce(&plan, &[Output::to("jsonl@pty".parse().unwrap())], ring, &shared);
         let (sender, far) = memory(1 << 20);
         let readers = Arc::new(Mutex::new(vec![Reader { far, received: Vec::new() }]));
         let act = |ms: i64, readers: &mut [Reader]| {

@@ -1,7 +1,9 @@
 //! The pacing thread: takes the next packet, waits until it is due, writes it, counts. Nothing else; what is not
 //! taken in time is the business of `overload`.
 
+use super::lockstep::Step;
 use super::overload::{Due, Queue, RETRY};
+use super::replies::{Replied, Replies};
 use super::tally::{Effort, LinkTally, SensorTally};
 use super::watch::Watching;
 use super::{Item, Shared};
@@ -9,6 +11,7 @@ use crate::clock::Clock;
 use crate::link::{Sender, Sent};
 use crate::scene::Overload;
 use crate::sensor::ByKind;
+use crate::time::SimTime;
 use crate::wire::Packet;
 use rtrb::Consumer;
 use std::sync::atomic::Ordering;
@@ -25,6 +28,10 @@ pub enum Speed {
 
 /// A wait is cut into pieces this long, ns, to notice that everything stops.
 const LOOK_UP: i64 = 50_000_000;
+/// The same where replies may come that are to be written soon.
+const REPLY_SOON: i64 = 10_000_000;
+/// With so much time until the next packet, ns, there is enough for another reply.
+const SPARE: i64 = 2_000_000;
 /// How long to wait for the producer when the ring is empty.
 const EMPTY: Duration = Duration::from_micros(50);
 
@@ -46,6 +53,10 @@ pub(super) struct Pacer<C> {
     pub effort: Effort,
     /// The comparison that `timing` asks for.
     pub watching: Option<Watching>,
+    /// What is to be written between the packets, by output.
+    pub replies: Vec<Option<Replies>>,
+    /// Which outputs are in lockstep.
+    pub steps: Vec<Option<Step>>,
 }
 
 /// What was made and neither sent nor dropped.
@@ -93,6 +104,8 @@ impl<C: Clock> Pacer<C> {
         let gone = vec![None; senders.len()];
         let queues = policies.into_iter().map(Queue::new).collect();
         let effort = Effort::default();
+        let replies = senders.iter().map(|_| None).collect();
+        let steps = senders.iter().map(|_| None).collect();
         Pacer {
             clock,
             ring,
@@ -105,6 +118,8 @@ impl<C: Clock> Pacer<C> {
             stretched: 0,
             effort,
             watching: None,
+            replies,
+            steps,
         }
     }
 
@@ -120,9 +135,12 @@ impl<C: Clock> Pacer<C> {
         let start = self.start;
         shared.start_ns.store(start, Ordering::Relaxed);
         while !shared.stopped() && self.gone.contains(&None) {
+            let replied = self.reply(shared);
             let look_up = if self.something_waits() {
                 self.send_all_waiting(shared);
                 RETRY
+            } else if self.replies.iter().any(Option::is_some) {
+                REPLY_SOON
             } else {
                 LOOK_UP
             };
@@ -137,13 +155,20 @@ impl<C: Clock> Pacer<C> {
                 self.compare(shared);
                 continue;
             }
-            let due = match self.speed {
-                Speed::Times(1.0) => self.start + item.packet.due.0,
-                Speed::Times(times) => self.start + (item.packet.due.0 as f64 / times) as i64,
-                Speed::Max => i64::MIN,
-            };
-            if due > self.clock.now() + look_up {
-                self.clock.sleep_until(self.clock.now() + look_up / 2);
+            let (output, carries, t) = (item.output, item.packet.carries, item.packet.due);
+            if self.steps_after(output, carries, t, shared) {
+                continue;
+            }
+            let (due, now) = (self.due(t), self.clock.now());
+            if due > now + look_up {
+                self.clock.sleep_until(now + look_up / 2);
+                continue;
+            }
+            if replied != Replied::Nothing && due > now + SPARE {
+                // Right behind a packet a link is full: later it may take the reply, too.
+                if replied == Replied::Full {
+                    self.clock.sleep_until(now + RETRY);
+                }
                 continue;
             }
             // The packet leaves the ring before the wait, so that nothing stands between the wait and the write.
@@ -156,7 +181,16 @@ impl<C: Clock> Pacer<C> {
             } else {
                 self.deliver(output, Due { packet, due }, shared);
             }
-            shared.scene_ns.store(packet.due.0, Ordering::Relaxed);
+            shared.stream_ns.store(packet.due.0, Ordering::Relaxed);
+        }
+    }
+
+    /// When what is due at the stream time `t` is due on the clock, ns; `i64::MIN` where nothing is paced.
+    pub(super) fn due(&self, t: SimTime) -> i64 {
+        match self.tempo() {
+            Speed::Times(1.0) => self.start + t.0,
+            Speed::Times(times) => self.start + (t.0 as f64 / times) as i64,
+            Speed::Max => i64::MIN,
         }
     }
 
@@ -173,6 +207,7 @@ impl<C: Clock> Pacer<C> {
     /// Writes a packet, and counts it if the link took it.
     pub(super) fn attempt(&mut self, output: usize, it: &Due, shared: &Shared) -> Sent {
         let Due { packet, due } = it;
+        let taken = self.steps[output].as_ref().map_or(0, Step::taken);
         let before = self.clock.now();
         let (sender, bytes) = (&mut self.senders[output], packet.bytes());
         let sent = match (self.speed, usize::from(packet.piece)) {
@@ -189,6 +224,9 @@ impl<C: Clock> Pacer<C> {
                 shared.packets.fetch_add(1, Ordering::Relaxed);
                 self.forget_replaced(output, packet, shared);
                 self.watch(packet, *due, Some(before));
+                if let Some(step) = &mut self.steps[output] {
+                    step.sent(packet, taken, before);
+                }
             }
             Sent::Away => tally.gaps.begin(before),
             Sent::Gone(kind) => self.gone[output] = Some(kind),

@@ -12,6 +12,8 @@ use std::time::Duration;
 pub(super) struct SensorTally {
     pub sent: u64,
     pub dropped: u64,
+    /// Those of them that a newer one replaced.
+    pub replaced: u64,
     /// When the last one was sent, unless a pause has come since.
     last: Option<i64>,
     /// From the first to the last of each stretch without a pause, summed, ns.
@@ -91,6 +93,8 @@ pub(super) struct LinkTally {
     pub packets: u64,
     pub bytes: u64,
     pub dropped: u64,
+    /// Packets beside the stream: answers, requests, a farewell.
+    pub replies: u64,
     pub sensors: ByKind<SensorTally>,
     pub gaps: Gaps,
     /// When its first and its last packet were sent, ns, and the bytes of the last.
@@ -105,6 +109,7 @@ impl LinkTally {
             packets: 0,
             bytes: 0,
             dropped: 0,
+            replies: 0,
             sensors: Default::default(),
             gaps: Gaps::default(),
             first: 0,
@@ -148,6 +153,7 @@ impl LinkTally {
         pairs
             .map(|(sensor, replaced)| {
                 sensor.dropped += u64::from(replaced);
+                sensor.replaced += u64::from(replaced);
                 u64::from(replaced)
             })
             .sum()
@@ -216,6 +222,7 @@ fn report(
     for tally in tallies.iter().map(|link| &link.sensors[kind as usize]) {
         all.sent += tally.sent;
         all.dropped += tally.dropped;
+        all.replaced += tally.replaced;
         all.late.add(&tally.late);
         all.interval.add(&tally.interval);
         all.write.add(&tally.write);
@@ -229,6 +236,7 @@ fn report(
         made: made[kind as usize],
         sent: all.sent,
         dropped: all.dropped,
+        replaced: all.replaced,
         queued: queued[kind as usize],
         late_us: all.late.late().filter(|_| paced),
         interval_us: all.interval.interval().filter(|_| paced),

@@ -1,5 +1,5 @@
 use super::pacer::Pacer;
-use super::producer::{self, Made};
+use super::producer::{self, Made, Task};
 use super::*;
 use crate::clock::{Clock, VirtualClock};
 use crate::link::{self, Far, Sender};
@@ -19,10 +19,16 @@ fn output(text: &str) -> Output {
     Output::to(text.parse().unwrap_or_else(|error| panic!("{error}")))
 }
 
+/// Makes a whole scene's packets, with no rest before it.
+pub(super) fn produce(plan: &Plan, outputs: &[Output], ring: rtrb::Producer<Item>, shared: &Shared) -> Made {
+    let task = Task { plan, outputs, peers: &[], end: plan.duration, rest: None };
+    producer::produce(task, ring, shared).0
+}
+
 /// The ring of a whole scene, made ahead, and what was made.
 pub(super) fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) {
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-    let made = producer::produce(plan, &[output(to)], plan.duration, ring, shared);
+    let made = produce(plan, &[output(to)], ring, shared);
     (consumer, made)
 }
 
@@ -176,11 +182,13 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
             plan: plan.clone(),
             outputs: vec![output(&format!("{protocol}@file:{}", path.display()))],
             end: plan.duration,
+            rest: None,
+            ground: None,
             speed: Speed::Max,
             wait: Duration::from_secs(1),
             command: Vec::new(),
             keep_stdout: false,
-            estimator: String::new(),
+            judging: Judging::default(),
             cpu: None,
             watch: None,
             tap: None,

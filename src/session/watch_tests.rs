@@ -25,7 +25,7 @@ fn watched(clock: VirtualClock) -> (Pacer<VirtualClock>, Vec<Record>, Vec<u8>) {
     let counted = allocation_counter::measure(|| pacer.run(MILLI, &shared));
     assert_eq!(counted.count_total, 0);
     accounts_balance(&made, &mut pacer);
-    assert_eq!(shared.scene_ns.load(Ordering::Relaxed), 999 * MILLI, "scene time is that of a run alone");
+    assert_eq!(shared.stream_ns.load(Ordering::Relaxed), 999 * MILLI, "scene time is that of a run alone");
     let records = std::iter::from_fn(|| recorded.pop().ok()).collect();
     (pacer, records, far.take())
 }

@@ -4,10 +4,13 @@
 //! test holds a whole conversation in memory. The session writes the replies, keeps the estimates for the score and
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
+mod frames;
 mod mavlink;
 mod mpu;
 mod msp;
 mod vectornav;
+
+pub use frames::frames;
 
 use super::{Controller, Protocol};
 use crate::geometry::Attitude;
@@ -69,7 +72,7 @@ pub struct Peer {
 }
 
 /// One end of a conversation; `now` is in ns on one clock, of which only differences matter.
-pub trait Dialogue {
+pub trait Dialogue: Send {
     /// Takes in bytes as they arrive, however they are cut.
     fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>));
 

@@ -63,6 +63,13 @@ impl Faults {
         (!chain.is_empty()).then(|| Faults { chain, taken, added, through: Vec::new(), now: SimTime::ZERO })
     }
 
+    /// The scene, in whose time faults are given, starts at `t`.
+    pub fn scene_starts(&mut self, t: SimTime) {
+        for faulty in &mut self.chain {
+            (faulty.start, faulty.end) = (faulty.start + t, faulty.end + t);
+        }
+    }
+
     /// Lets packets made at `t` pass: leaves what goes out of them, and of those before, by then.
     pub fn pass(&mut self, t: SimTime, packets: &mut Vec<Packet>) {
         self.now = t;

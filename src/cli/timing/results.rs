@@ -66,7 +66,7 @@ pub fn fill(report: &mut TimingReport, measured: &Measured) {
 
 /// Losses at either end, and broken limits.
 pub fn judge(report: &mut TimingReport, limits: &[Limit]) -> Result<(), Refusal> {
-    run::judge(&mut report.run, &[], None)?;
+    run::judge(&mut report.run, &[], None, false)?;
     let missed = report.run.sensors.iter().filter_map(|sensor| {
         let missed = sensor.timing?.missed?;
         // What was dropped is told already.

@@ -1,0 +1,65 @@
+//! While the vehicle is held still: whether the scene may begin, and for how long that is waited for.
+
+use super::{SessionError, Shared, lockstep};
+use crate::time::SimTime;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// What the control side knows of the rest.
+pub(super) struct Hold {
+    rest: SimTime,
+    /// Since when nothing but the other side is waited for.
+    since: Option<Instant>,
+    began: bool,
+    /// Answers in lockstep that did not come.
+    untaken: u64,
+}
+
+impl Hold {
+    /// Of a scene that begins after such a rest, or at once.
+    pub(super) fn new(rest: Option<SimTime>) -> Hold {
+        Hold { rest: rest.unwrap_or_default(), since: None, began: rest.is_none(), untaken: 0 }
+    }
+
+    /// Looks on: `unready` is a link whose other side is not ready, with what came on it. True when the scene has
+    /// begun since the last look.
+    ///
+    /// # Errors
+    /// A rest that is over for `wait`, and somebody is not ready.
+    pub(super) fn look(
+        &mut self,
+        shared: &Shared,
+        unready: Option<(String, String)>,
+        wait: Duration,
+    ) -> Result<bool, SessionError> {
+        if self.began {
+            return Ok(false);
+        }
+        shared.ready.store(unready.is_none() || wait.is_zero(), Ordering::Relaxed);
+        let t = SimTime(shared.stream_ns.load(Ordering::Relaxed));
+        if shared.scene_time(t).is_some() {
+            self.began = true;
+            return Ok(true);
+        }
+        match unready.filter(|_| t >= self.rest && !wait.is_zero()) {
+            None => self.since = None,
+            Some((link, came)) => {
+                let since = *self.since.get_or_insert_with(Instant::now);
+                if since.elapsed() >= wait {
+                    return Err(SessionError::NotReady { link, rested: t, came });
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// What the user should know of answers in lockstep that did not come.
+    pub(super) fn untaken(&mut self, shared: &Shared) -> Option<String> {
+        let untaken = shared.untaken.load(Ordering::Relaxed);
+        let patience = SimTime(lockstep::PATIENCE);
+        (std::mem::replace(&mut self.untaken, untaken) < untaken).then(|| {
+            format!("no answer to a packet of samples for {patience}: the stream goes on in real time until the next one")
+        })
+    }
+}
