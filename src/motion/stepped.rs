@@ -7,6 +7,7 @@
 
 use super::Motion;
 use crate::geometry::{Attitude, Body, Nav, Vector};
+use crate::os;
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 
@@ -55,11 +56,16 @@ impl Stepped {
             }
             return many;
         }
-        self.within(since.map(|since| (since.0 - self.from) as f64))
+        let ns = since.map(|since| (since.0 - self.from) as f64);
+        os::widest(
+            #[inline(always)]
+            || self.within(ns),
+        )
     }
 
     /// So many nanoseconds into the cell. The same operations on each of several columns, which the processor does on
     /// two at a time.
+    #[inline(always)]
     fn within<const N: usize>(&self, ns: [f64; N]) -> Many<N> {
         let DQuat { x, y, z, w } = self.cell;
         let mut q = [[0.0; N]; 4];
@@ -92,6 +98,14 @@ impl<const N: usize> Many<N> {
     /// What they make of a nav vector in body axes: [`rotate`](crate::geometry::rotate) by the inverse, column by
     /// column.
     pub(super) fn to_body(&self, v: Vector<Nav>) -> [Vector<Body>; N] {
+        os::widest(
+            #[inline(always)]
+            || self.seen(v),
+        )
+    }
+
+    #[inline(always)]
+    fn seen(&self, v: Vector<Nav>) -> [Vector<Body>; N] {
         let [x, y, z, w] = &self.q;
         let v = v.v;
         let mut seen = [Vector::ZERO; N];
@@ -116,6 +130,7 @@ const COS: [f64; 7] =
     [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
 
 /// The polynomial of these coefficients, the constant one first.
+#[inline(always)]
 fn series<const N: usize>(square: f64, coefficients: &[f64; N]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * square + coefficient)
 }
