@@ -6,7 +6,7 @@
 //! never on which were asked before, and nothing adds up.
 
 use super::Motion;
-use crate::geometry::{Attitude, Body, Nav, Vector};
+use crate::geometry::{Attitude, Nav, Vector};
 use crate::os;
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
@@ -95,9 +95,9 @@ impl<const N: usize> Many<N> {
         Attitude::from_quat(DQuat::from_xyzw(x[i], y[i], z[i], w[i]))
     }
 
-    /// What they make of a nav vector in body axes: [`rotate`](crate::geometry::rotate) by the inverse, column by
-    /// column.
-    pub(super) fn to_body(&self, v: Vector<Nav>) -> [Vector<Body>; N] {
+    /// What they make of a nav vector in body axes: [`rotate`](crate::geometry::rotate) by the inverse, as columns
+    /// x, y, z.
+    pub(super) fn to_body(&self, v: Vector<Nav>) -> [[f64; N]; 3] {
         os::widest(
             #[inline(always)]
             || self.seen(v),
@@ -105,19 +105,17 @@ impl<const N: usize> Many<N> {
     }
 
     #[inline(always)]
-    fn seen(&self, v: Vector<Nav>) -> [Vector<Body>; N] {
+    fn seen(&self, v: Vector<Nav>) -> [[f64; N]; 3] {
         let [x, y, z, w] = &self.q;
         let v = v.v;
-        let mut seen = [Vector::ZERO; N];
+        let mut seen = [[0.0; N]; 3];
         for i in 0..N {
             let (bx, by, bz) = (-x[i], -y[i], -z[i]);
             let (tx, ty, tz) =
                 (2.0 * (by * v.z - v.y * bz), 2.0 * (bz * v.x - v.z * bx), 2.0 * (bx * v.y - v.x * by));
-            seen[i] = Vector::new(
-                v.x + w[i] * tx + (by * tz - ty * bz),
-                v.y + w[i] * ty + (bz * tx - tz * bx),
-                v.z + w[i] * tz + (bx * ty - tx * by),
-            );
+            seen[0][i] = v.x + w[i] * tx + (by * tz - ty * bz);
+            seen[1][i] = v.y + w[i] * ty + (bz * tx - tz * bx);
+            seen[2][i] = v.z + w[i] * tz + (bx * ty - tx * by);
         }
         seen
     }
@@ -157,7 +155,7 @@ mod tests {
                 assert_eq!(q, Stepped::new(rate).at(&*motion, start, [t]).attitude(0), "{rate} at {t}");
                 let v = Vector::new(3.0, -1.0, 9.80665);
                 let seen = stepped.at(&*motion, start, [t]).to_body(v);
-                assert_eq!(seen[0], q.inverse().apply(v));
+                assert_eq!(Vector::new(seen[0][0], seen[1][0], seen[2][0]), q.inverse().apply(v));
             }
             // Several at once, across the ends of cells too, are each as it is alone.
             for k in 0..2000i64 {

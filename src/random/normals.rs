@@ -40,11 +40,18 @@ impl Normals {
     /// the quickest where values do not wait for one another.
     #[inline(always)]
     pub fn zip(&mut self, columns: [&mut [f64]; 3], mut each: impl FnMut(usize, &mut f64, f64)) {
-        self.runs(columns[0].len(), |at, run| {
-            for (axis, run) in run.into_iter().enumerate() {
-                columns[axis][at.clone()].iter_mut().zip(run).for_each(|(value, n)| each(axis, value, *n));
-            }
-        });
+        self.runs(
+            columns[0].len(),
+            #[inline(always)]
+            |at, run| {
+                for (axis, run) in run.into_iter().enumerate() {
+                    columns[axis][at.clone()]
+                        .iter_mut()
+                        .zip(run)
+                        .for_each(|(value, n)| each(axis, value, *n));
+                }
+            },
+        );
     }
 
     /// Calls `take` with the next `count` of each axis in runs of the same length: where in the count each run is, and
@@ -54,23 +61,20 @@ impl Normals {
         let mut passing = [[0.0; CHUNK]; 3];
         let mut done = 0;
         while done < count {
-            let length = CHUNK.min(count - done);
-            let at = |length| done..done + length;
-            if self.used == CHUNK && length == CHUNK {
+            let whole = self.used == CHUNK && count - done >= CHUNK;
+            if whole {
                 make(&mut self.axes, &mut passing);
-                take(at(CHUNK), passing.each_ref().map(<[f64; CHUNK]>::as_slice));
-                done += CHUNK;
-                continue;
-            }
-            if self.used == CHUNK {
+            } else if self.used == CHUNK {
                 make(&mut self.axes, &mut self.ready);
                 self.used = 0;
             }
-            let length = length.min(CHUNK - self.used);
-            let run = self.used..self.used + length;
-            take(at(length), self.ready.each_ref().map(|ready| &ready[run.clone()]));
-            self.used = run.end;
+            let (from, source) = if whole { (0, &passing) } else { (self.used, &self.ready) };
+            let length = (CHUNK - from).min(count - done);
+            take(done..done + length, source.each_ref().map(|axis| &axis[from..from + length]));
             done += length;
+            if !whole {
+                self.used += length;
+            }
         }
     }
 }

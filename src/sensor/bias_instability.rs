@@ -84,7 +84,7 @@ impl Term for GaussMarkov {
     #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         let (decay, step) = (self.decay.to_array(), self.step.to_array());
-        let next = |axis: usize, bias, n| decay[axis] * bias + step[axis] * n;
+        let next = move |axis: usize, bias, n| decay[axis] * bias + step[axis] * n;
         self.bias = wander(&mut self.normals, self.bias, &mut block.bias, next);
     }
 

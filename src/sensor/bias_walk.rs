@@ -59,7 +59,7 @@ impl Term for Walk {
     #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         let step = self.step.to_array();
-        let next = |axis: usize, walk, n| walk + step[axis] * n;
+        let next = move |axis: usize, walk, n| walk + step[axis] * n;
         self.bias = wander(&mut self.normals, self.bias, &mut block.bias, next);
     }
 

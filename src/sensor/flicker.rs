@@ -106,7 +106,7 @@ impl Term for Flicker {
     fn apply(&mut self, block: &mut Block) {
         for process in &mut self.0 {
             let (decay, step) = (process.decay, process.step.to_array());
-            let next = |axis: usize, bias, n| decay * bias + step[axis] * n;
+            let next = move |axis: usize, bias, n| decay * bias + step[axis] * n;
             process.bias = wander(&mut process.normals, process.bias, &mut block.bias, next);
         }
     }

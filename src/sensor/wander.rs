@@ -15,14 +15,21 @@ pub(super) fn wander(
 ) -> DVec3 {
     let mut states = states.to_array();
     let [x, y, z] = columns;
-    normals.runs(x.len(), |at, [nx, ny, nz]| {
-        let biases = x[at.clone()].iter_mut().zip(&mut y[at.clone()]).zip(&mut z[at]);
-        for (((x, y), z), ((nx, ny), nz)) in biases.zip(nx.iter().zip(ny).zip(nz)) {
-            for (axis, (bias, n)) in [(x, nx), (y, ny), (z, nz)].into_iter().enumerate() {
-                *bias += states[axis];
-                states[axis] = next(axis, states[axis], *n);
+    normals.runs(
+        x.len(),
+        #[inline(always)]
+        |at, [nx, ny, nz]| {
+            // On the way through a run the states stay in registers.
+            let [mut sx, mut sy, mut sz] = states;
+            let biases = x[at.clone()].iter_mut().zip(&mut y[at.clone()]).zip(&mut z[at]);
+            for (((x, y), z), ((nx, ny), nz)) in biases.zip(nx.iter().zip(ny).zip(nz)) {
+                *x += sx;
+                *y += sy;
+                *z += sz;
+                (sx, sy, sz) = (next(0, sx, *nx), next(1, sy, *ny), next(2, sz, *nz));
             }
-        }
-    });
+            states = [sx, sy, sz];
+        },
+    );
     DVec3::from_array(states)
 }

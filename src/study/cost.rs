@@ -77,7 +77,7 @@ pub fn run(plan: &Plan, effort: Effort, now: &dyn Fn() -> Duration) -> Cost {
     let mut least = Duration::MAX;
     for _ in 0..effort.rounds {
         for (best, left_out) in best.iter_mut().zip(&left_out) {
-            let mut player = Player::without(plan, end, std::env::var("RT_BLOCK").map_or(BLOCK, |b| b.parse().unwrap()), left_out);
+            let mut player = Player::without(plan, end, BLOCK, left_out);
             let start = now();
             while let Some(columns) = player.play_columns() {
                 black_box(columns);
