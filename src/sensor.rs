@@ -33,6 +33,7 @@ mod strides;
 mod temperature;
 mod units;
 mod vibration;
+mod wander;
 pub mod white_noise;
 
 pub use aid::{Claims, Fix, sea_level_pressure};
@@ -53,8 +54,10 @@ pub use units::Units;
 
 use crate::geometry::{Body, Vector};
 use crate::keys::{Key, KeyError, Values};
-use crate::random::{self, Stream};
+use crate::os;
+use crate::random::{self, Normals, Stream};
 use crate::time::{Rate, SimTime};
+use glam::DVec3;
 
 /// How a reading samples the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -175,12 +178,27 @@ impl Context {
     pub fn streams(&self, term: &str) -> [Stream; 3] {
         random::axes(self.seed, &format!("{}/{term}", self.sensor))
     }
+
+    /// Normal numbers of those streams, on the axes on which `size` is not zero.
+    pub fn normals(&self, term: &str, size: DVec3) -> Normals {
+        let wanted = size.to_array().map(|size| size != 0.0);
+        random::normals(self.seed, &format!("{}/{term}", self.sensor), wanted)
+    }
 }
 
 /// One error of one sensor, applied to its samples in order; what it does never depends on where blocks begin.
 pub trait Term: Send {
-    /// Changes the bias or the reading of every sample of the block.
+    /// Changes the bias or the reading of every sample of the block. Marked `#[inline(always)]`, and so all that it
+    /// calls a sample, for [`Term::act`] to compile it for wider vectors.
     fn apply(&mut self, block: &mut Block);
+
+    /// The same with the widest vectors of this processor.
+    fn act(&mut self, block: &mut Block) {
+        os::widest(
+            #[inline(always)]
+            || self.apply(block),
+        );
+    }
 
     /// Normal numbers that it draws for each sample.
     fn normals(&self) -> usize {
@@ -330,14 +348,14 @@ impl Sensor {
             reading.extend_from_slice(truth);
         }
         for term in &mut self.signals {
-            term.apply(block);
+            term.act(block);
         }
         for bias in &mut block.bias {
             bias.clear();
             bias.resize(n, 0.0);
         }
         for term in &mut self.biases {
-            term.apply(block);
+            term.act(block);
         }
         if !self.biases.is_empty() {
             for (reading, bias) in block.reading.iter_mut().zip(&block.bias) {
@@ -345,7 +363,7 @@ impl Sensor {
             }
         }
         for term in &mut self.readings {
-            term.apply(block);
+            term.act(block);
         }
     }
 }

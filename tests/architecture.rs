@@ -16,7 +16,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("double", &[]),
     ("time", &["double"]),
     ("quantity", &["double"]),
-    ("random", &[]),
+    // Normal numbers are made with the processor's widest vectors, which only `os` may ask for; so are the columns of
+    // motion, sensor and study.
+    ("random", &["os"]),
     ("geometry", &[]),
     // A key is declared with the kind of quantity it takes, and a value may be a time or an attitude.
     ("keys", &["double", "quantity", "time", "geometry"]),
@@ -25,9 +27,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("earth", &[]),
     // Motion and sensor declare their keys as data, so they need `keys` and `quantity`; a sensor's streams are
     // named by it and seeded from outside, so it needs `random`: all three are foundation.
-    ("motion", &["earth"]),
+    ("motion", &["earth", "os"]),
     // A receiver's fix is a place, and a barometer's pressure that of an altitude.
-    ("sensor", &["motion", "earth"]),
+    ("sensor", &["motion", "earth", "os"]),
     ("schedule", &[]),
     // An output names its protocol and its link, whose spellings and parameters are theirs.
     ("scene", &["earth", "motion", "sensor", "schedule", "wire", "link"]),
@@ -53,7 +55,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("listen", &["link", "wire", "clock", "sensor", "report", "os"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
     ("dataset", &["player", "scene", "sensor", "motion", "parallel", "earth"]),
-    ("study", &["player", "motion", "clock", "scene", "sensor", "report", "parallel"]),
+    ("study", &["player", "motion", "clock", "scene", "sensor", "report", "parallel", "os"]),
     ("parallel", &[]),
     (
         "cli",

@@ -185,11 +185,13 @@ impl Trajectory {
         let since = times.map(|t| t - segment.start);
         let many = stepped.at(&*segment.motion, segment.attitude, since);
         let (force, field) = (many.to_body(-self.gravity), many.to_body(self.field));
-        for i in 0..N {
-            let (t, attitude, mut force) = (times[i], many.attitude(i), force[i]);
+        let vector =
+            |columns: &[[f64; N]; 3], i: usize| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
+        truth.extend((0..N).map(|i| {
+            let (t, attitude, mut force) = (times[i], many.attitude(i), vector(&force, i));
             self.pushes(t, attitude.inverse()).for_each(|push| force += push);
-            truth.push(Truth { t, attitude, rate, force, field: field[i] });
-        }
+            Truth { t, attitude, rate, force, field: vector(&field, i) }
+        }));
     }
 
     fn segment(&self, t: SimTime) -> &Segment {

@@ -4,14 +4,13 @@ use super::sensed;
 use crate::earth::{self, Place};
 use crate::geometry::{Body, Vector};
 use crate::motion::{Course, Track, Trajectory, Truth};
-use crate::random::Stream;
+use crate::random::Normals;
 use crate::sensor::block::{self, Block, Column};
 use crate::sensor::{
     Sampling, Sensor, SensorKind, SensorPlan, at_arm, delay, jitter, lever_arm, sea_level_pressure,
 };
 use crate::time::SimTime;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 
 /// Fills a sensor's blocks from the truth, in order of time.
 #[derive(Debug)]
@@ -130,14 +129,14 @@ impl Aid {
 struct Sensing {
     delay: SimTime,
     /// Standard deviation and bound of the jitter, ns, and where it comes from.
-    jitter: Option<(f64, f64, Stream)>,
+    jitter: Option<(f64, f64, Normals)>,
 }
 
 impl Sensing {
     fn of(plan: &SensorPlan, seed: u64) -> Sensing {
-        let [stream, ..] = plan.context(seed).streams("clock_error");
+        let normals = plan.context(seed).normals("clock_error", DVec3::X);
         let (sigma, bound) = (jitter(&plan.values) * 1e9, 0.4e9 * plan.clock().period());
-        Sensing { delay: delay(&plan.values), jitter: (sigma > 0.0).then_some((sigma, bound, stream)) }
+        Sensing { delay: delay(&plan.values), jitter: (sigma > 0.0).then_some((sigma, bound, normals)) }
     }
 
     fn is_at_ticks(&self) -> bool {
@@ -146,8 +145,8 @@ impl Sensing {
 
     /// When the sample of the next tick, at `t`, is sensed: never before the start.
     fn time(&mut self, t: SimTime) -> SimTime {
-        let off = self.jitter.as_mut().map_or(0, |(sigma, bound, stream)| {
-            let n: f64 = StandardNormal.sample(stream);
+        let off = self.jitter.as_mut().map_or(0, |(sigma, bound, normals)| {
+            let [n, ..] = normals.draw();
             libm::round((*sigma * n).clamp(-*bound, *bound)) as i64
         });
         SimTime((t - self.delay).0.saturating_add(off)).max(SimTime::ZERO)

@@ -6,11 +6,10 @@ use super::section::Section;
 use crate::geometry::Vector;
 use crate::keys::{self, Key, Takes};
 use crate::quantity::{self, Kind, Sign};
-use crate::random::{self, Stream};
+use crate::random;
 use crate::sensor::{self, SensorKind, SensorPlan};
 use glam::{DMat3, DVec3};
 use rand::RngExt;
-use rand_distr::{Distribution, StandardNormal};
 
 /// A value that was drawn once for this run.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -35,12 +34,10 @@ impl Section<'_> {
             }
         };
         let (shape, low, high) = self.distribution(key.name, kind, table)?;
-        let axes: &[usize] = if scalar { &[0] } else { &[0, 1, 2] };
+        let fresh = shape.fresh(self.reader.seed.get(), &format!("draw/{}/{}", self.path, key.name));
         let mut drawn = [0.0; 3];
-        for &axis in axes {
-            let name = format!("draw/{}/{}/{}", self.path, key.name, ["x", "y", "z"][axis]);
-            let mut stream = random::stream(self.reader.seed.get(), &name);
-            let value = shape.sample(low[axis], high[axis], &mut stream);
+        for axis in if scalar { 0..1 } else { 0..3 } {
+            let value = shape.value(low[axis], high[axis], fresh[axis]);
             // The size of a noise has no sign; the tail of a normal distribution is folded over.
             drawn[axis] = if kind.is_magnitude() { value.abs() } else { value };
         }
@@ -135,13 +132,19 @@ enum Shape {
 }
 
 impl Shape {
-    fn sample(self, a: f64, b: f64, stream: &mut Stream) -> f64 {
+    /// A number an axis from the distribution's standard form, of the streams of this name.
+    fn fresh(self, seed: u64, name: &str) -> [f64; 3] {
         match self {
-            Shape::Uniform => a + (b - a) * stream.random::<f64>(),
-            Shape::Normal => {
-                let n: f64 = StandardNormal.sample(stream);
-                a + b * n
-            }
+            Shape::Uniform => random::axes(seed, name).map(|mut stream| stream.random::<f64>()),
+            Shape::Normal => random::normals(seed, name, [true; 3]).draw(),
+        }
+    }
+
+    /// What that stands for between two ends, or about a mean and with a standard deviation.
+    fn value(self, a: f64, b: f64, fresh: f64) -> f64 {
+        match self {
+            Shape::Uniform => a + (b - a) * fresh,
+            Shape::Normal => a + b * fresh,
         }
     }
 }

@@ -3,14 +3,13 @@
 //! Their truth is a position, which is found beside the truth of a tick and only for a scene that has one of them.
 //! A barometer has one component; a GPS receiver's position has three, along nav axes, and so have its error terms.
 
-use super::{Block, Context, SensorKind, Stage, Term, TermKind};
+use super::{Block, SensorKind, Stage, Term, TermKind};
 use crate::earth::{Place, SEA_LEVEL_PRESSURE};
 use crate::geometry::{Nav, Vector};
 use crate::keys::{Key, Takes, Values};
 use crate::quantity::{Kind, Sign};
-use crate::random::Stream;
+use crate::random::Normals;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 
 /// The terms of which a barometer's reading has a use.
 const BARO_TERMS: [&str; 12] = [
@@ -137,33 +136,25 @@ pub(super) static VELOCITY_NOISE: TermKind = TermKind {
     },
     build: |values, context| {
         let sigma = values.vector("velocity_noise_std").unwrap_or_default();
-        Ok((sigma != DVec3::ZERO).then(|| Box::new(VelocityNoise::new(sigma, context)) as Box<dyn Term>))
+        Ok((sigma != DVec3::ZERO).then(|| {
+            Box::new(VelocityNoise { sigma, normals: context.normals("velocity_noise", sigma) }) as Box<dyn Term>
+        }))
     },
 };
 
 struct VelocityNoise {
     sigma: DVec3,
-    streams: [Stream; 3],
-}
-
-impl VelocityNoise {
-    fn new(sigma: DVec3, context: &Context) -> VelocityNoise {
-        VelocityNoise { sigma, streams: context.streams("velocity_noise") }
-    }
+    normals: Normals,
 }
 
 impl Term for VelocityNoise {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
-        for axis in (0..3).filter(|&axis| self.sigma[axis] != 0.0) {
-            let (sigma, stream) = (self.sigma[axis], &mut self.streams[axis]);
-            for velocity in &mut block.velocity[axis] {
-                let n: f64 = StandardNormal.sample(stream);
-                *velocity += sigma * n;
-            }
-        }
+        let (sigma, velocity) = (self.sigma.to_array(), block.velocity.each_mut().map(Vec::as_mut_slice));
+        self.normals.zip(velocity, |axis, velocity, normal| *velocity += sigma[axis] * normal);
     }
 
     fn normals(&self) -> usize {
-        self.sigma.to_array().iter().filter(|&&sigma| sigma != 0.0).count()
+        self.normals.count()
     }
 }

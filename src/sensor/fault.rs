@@ -174,6 +174,7 @@ struct Faulty {
 }
 
 impl Term for Faulty {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for i in 0..block.len() {
             let k = self.k + i as u64;

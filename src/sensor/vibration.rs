@@ -239,6 +239,7 @@ struct Vibration {
 }
 
 impl Term for Vibration {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for stride in strides(self.k, block.len()) {
             let t = (self.phase + self.clock.tick(stride.anchor)).seconds();
