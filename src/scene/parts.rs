@@ -91,14 +91,14 @@ impl fmt::Display for OutputRate {
 }
 
 impl fmt::Display for Filter {
-    /// `DLPF 2 92 Hz, delay 0.0039 s, at 1000 Hz`
+    /// `DLPF 2 92 Hz, delay 3.9 ms, at 1000 Hz`
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {} Hz", self.name, self.low_pass)?;
         if self.order == 2 {
             f.write_str(" of order 2")?;
         }
         if let Some(delay) = self.delay {
-            write!(f, ", delay {delay}")?;
+            write!(f, ", delay {} ms", delay.0 as f64 / 1e6)?;
         }
         let at: Vec<_> = self.at.iter().map(Rate::to_string).collect();
         if at.is_empty() { Ok(()) } else { write!(f, ", at {}", at.join(" or ")) }
@@ -233,7 +233,7 @@ impl Settings {
     }
 }
 
-fn rate(text: &str) -> Option<Rate> {
+pub(super) fn rate(text: &str) -> Option<Rate> {
     let (numerator, denominator) = quantity::rate(text).ok()?;
     Rate::new(numerator, denominator)
 }

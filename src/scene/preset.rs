@@ -43,18 +43,15 @@ pub(super) fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'stat
     let settings = file.settings(kind);
     let fill = fill(section, kind, preset, &settings.scales, file.table.get("mount"));
     section.add(fill);
-    let wanted = section.entry("rate").and_then(|entry| rate_of(&entry.node));
+    let wanted = section.entry("rate").and_then(|entry| match &entry.node.value {
+        Value::Text(text) => super::parts::rate(text),
+        _ => None,
+    });
     let named = named_filter(section, settings, wanted);
     if let Some(wanted) = wanted {
         check_rate(section, part, kind, settings, &named, wanted);
     }
     Some(part.names[0])
-}
-
-fn rate_of(node: &Node) -> Option<Rate> {
-    let Value::Text(text) = &node.value else { return None };
-    let (numerator, denominator) = quantity::rate(text).ok()?;
-    Rate::new(numerator, denominator)
 }
 
 /// A rate that the part has not, or not with this filter, is told and played.

@@ -117,7 +117,7 @@ pub fn lines(part: &Part, kind: SensorKind, doctored: f64, more: &str) -> Vec<Li
     for filter in names {
         let (shown, wrong) = low_pass(name, kind, filter, &settings);
         let bound = "gain 0.7071 ± 0.0001 at each".to_string();
-        add(&format!("filter `{filter}`"), shown.clone(), (shown, source_of("filters")), bound, wrong);
+        add(&format!("filter `{filter}`"), "–".into(), (shown, source_of("filters")), bound, wrong);
     }
     lines
 }
@@ -207,7 +207,7 @@ What the datasheets say, what the emulator is set to, and whether it does it. Ma
 
     RATETABLE_WRITE=1 cargo test --test parts
 
-and checked by the same test without the variable: every line is measured again, and this page is what comes of it. The figures of the sheets are a copy of their own ([tests/parts/sheets.toml](../tests/parts/sheets.toml)), apart from the parts' files ([src/sensor/parts](../src/sensor/parts)); a sheet or a file that is a fifth off fails on its line. Only readings are looked at: SPECIMENS specimens of each part, each with a seed of its own, in free fall, at rest, turned and pushed along each axis at half of full scale, and warmed by 40 K; each line with its own error term alone. `ratetable list parts` has the same sources, and the output data rates.
+and checked by the same test without the variable: every line is measured again, and this page is what comes of it. The figures of the sheets are a copy of their own ([tests/parts/sheets.toml](../tests/parts/sheets.toml)), apart from the parts' files ([src/sensor/parts](../src/sensor/parts)); a sheet or a file that is a fifth off fails on its line. Of the filters there is the one copy in the parts' files; that each of them has the bandwidth it says is measured here, at the rate it belongs to. Only readings are looked at: SPECIMENS specimens of each part, each with a seed of its own, in free fall, at rest, turned and pushed along each axis at half of full scale, and warmed by 40 K; each line with its own error term alone. `ratetable list parts` has the same sources, and the output data rates.
 
 Tolerances are taken as the ends of a uniform distribution. A value whose source begins with *assumed* has no line: the sheet does not have it.
 
@@ -218,7 +218,7 @@ pub fn page(all: &[(&Part, Vec<Line>)]) -> String {
     let mut page = HEAD.replace("SPECIMENS", &SPECIMENS.to_string());
     for (part, lines) in all {
         page += &format!("## {}\n\n{}\n\n", part.names.join(", "), part.about);
-        page += "| | | sheet | in the part's file | must be measured | agrees | source |\n|---|---|---|---|---|---|---|\n";
+        page += "| sensor | what | sheet | in the part's file | must be measured | agrees | source |\n|---|---|---|---|---|---|---|\n";
         for line in lines {
             let agrees = line.wrong.as_ref().map_or("yes".into(), |wrong| format!("**no**: {wrong}"));
             let file = if line.file == line.sheet { "the same" } else { &line.file };
