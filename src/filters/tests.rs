@@ -1,0 +1,1 @@
+//! Each filter on readings without error.
