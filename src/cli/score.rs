@@ -139,19 +139,15 @@ fn judge(track: &Track, recorded: &Recorded, arguments: &Arguments) -> Option<Ju
         track.first() <= t && t <= track.last()
     };
     let inside = (0..recorded.estimates.len()).filter(|&i| within(i)).count();
-    let ours = (2 * inside >= recorded.estimates.len()).then(|| on(Clock::Scene)).flatten();
+    let is_ours = 2 * inside >= recorded.estimates.len();
+    let ours = if is_ours { Some(on(Clock::Scene)?) } else { None };
     let is_good = |judged: &Judged| judged.figures.rms_deg < 10.0 || judged.figures.looks.is_some();
     if ours.as_ref().is_some_and(is_good) {
         return ours;
     }
     let theirs = on(Clock::Foreign);
-    match (ours, theirs) {
-        (Some(ours), Some(theirs)) => {
-            let is_better = is_good(&theirs) && theirs.figures.delay_doubt.is_none();
-            Some(if is_better { theirs } else { ours })
-        }
-        (ours, theirs) => ours.or(theirs),
-    }
+    let is_sure = |judged: &Judged| is_good(judged) && judged.figures.delay_doubt.is_none();
+    if ours.is_none() || theirs.as_ref().is_some_and(is_sure) { theirs } else { ours }
 }
 
 /// What would help.

@@ -313,11 +313,13 @@ impl Bench<'_> {
         }
     }
 
-    /// Where nothing better is known: the times as given, or the first estimate at the first truth.
+    /// Where nothing better is known: the times as given; on a clock of its own the first estimate at the first truth,
+    /// which is right of a vehicle at rest and of no other.
     fn fallback(&self, series: &Series) -> Option<i64> {
         match self.options.clock {
             Clock::Scene => Some(0),
-            Clock::Foreign => Some(series.times.first()? - self.options.from.0),
+            Clock::Foreign if self.grid.is_still() => Some(series.times.first()? - self.options.from.0),
+            Clock::Foreign => None,
         }
     }
 
