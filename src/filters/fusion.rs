@@ -1,8 +1,8 @@
 //! Fusion of x-io Technologies, the revised Madgwick filter (S. Madgwick, PhD thesis, Bristol 2014, chapter 7); the
 //! crate `fusion-ahrs`, in `f32`.
 //!
-//! It works in North-East-Down here, but takes deg/s and g, and all three sensors at once. Its gain comes down from 10
-//! to 0.5 within its first three seconds.
+//! It works in North-East-Down here, but takes deg/s and g, and all three sensors at once. Its gain is 0.5: the
+//! start-up, in which it comes down from 10, is left out.
 
 use super::held::Held;
 use super::{Filter, FilterKind, Setup};
@@ -28,6 +28,8 @@ fn build(setup: &Setup) -> Box<dyn Filter> {
     let mut filter = Ahrs::with_settings(settings);
     let q = setup.start.q;
     filter.set_quaternion(Quaternion::new(q.w as f32, q.x as f32, q.y as f32, q.z as f32));
+    // Its start-up looks for the attitude that it has been given, and without a magnetometer holds heading at 0.
+    filter.skip_startup();
     Box::new(Fusion { filter, accel: Held::default(), mag: Held::default() })
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::Euler;
 use glam::DVec3;
-use ratetable_firmware_host_tests::ahrs::{Ahrs, Kind, Periods};
+use ratetable_firmware_host_tests::ahrs::{Kind, Periods};
 
 const GRAVITY: f64 = 9.80665;
 /// 20 µT to magnetic north, which is 10 deg east of true, and 45 down.
