@@ -45,6 +45,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     // A pty that plays a UART takes its time.
     ("link", &["os", "clock"]),
     ("score", &[]),
+    ("filters", &[]),
     // The report of a run holds its score, plain data.
     ("report", &["score"]),
     // The scene's plan, its trajectory and its sensors are what a session plays and reports on.
@@ -60,8 +61,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "scene", "effects", "session", "listen", "dataset", "score", "study", "report", "motion",
-            "sensor", "wire", "link", "player", "os", "clock", "earth", "parallel",
+            "scene", "effects", "filters", "session", "listen", "dataset", "score", "study", "report",
+            "motion", "sensor", "wire", "link", "player", "os", "clock", "earth", "parallel",
         ],
     ),
 ];
