@@ -176,6 +176,10 @@ impl<C: Clock> Pacer<C> {
             if due != i64::MIN {
                 self.clock.wait_until(due);
             }
+            if replied == Replied::Full {
+                // Whoever waits for an answer waits longer than one who misses a sample.
+                self.reply(shared);
+            }
             if packet.is_nothing() {
                 self.senders[output].send_kept(packet.piece.into());
             } else {
