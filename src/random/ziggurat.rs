@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 const LAYERS: usize = 512;
 
 /// Where the tail begins: for which 512 layers of area R·f(R) + ∫ f from R on end at the density's top.
-pub(super) const R: f64 = 3.852_046_150_368_391_2;
+pub(super) const R: f64 = 3.852_046_150_368_391;
 
 /// The layers' edges.
 pub(super) static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
