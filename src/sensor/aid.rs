@@ -137,7 +137,8 @@ pub(super) static VELOCITY_NOISE: TermKind = TermKind {
     build: |values, context| {
         let sigma = values.vector("velocity_noise_std").unwrap_or_default();
         Ok((sigma != DVec3::ZERO).then(|| {
-            Box::new(VelocityNoise { sigma, normals: context.normals("velocity_noise", sigma) }) as Box<dyn Term>
+            Box::new(VelocityNoise { sigma, normals: context.normals("velocity_noise", sigma) })
+                as Box<dyn Term>
         }))
     },
 };
