@@ -213,9 +213,9 @@ fn px4_on_its_board_is_waited_for_held_still_and_bridged_to_a_ground_station() {
     assert!(arrived.windows(order.len()).any(|window| window == order), "the order arrived whole");
     let attitude = &report["attitude"];
     assert_eq!(attitude["estimator"], "px4");
-    // It says level and north all the time, and in the end the vehicle faces east.
+    // It says level and north all the time, and in the end the vehicle faces east; 20 ms before, two degrees less.
     assert!(attitude["samples"].as_u64().unwrap() > 40, "{attitude}");
-    assert!((attitude["max_deg"].as_f64().unwrap() - 90.0).abs() < 1.0, "{attitude}");
+    assert!((attitude["max_deg"].as_f64().unwrap() - 90.0).abs() < 4.0, "{attitude}");
     assert!(report["rest_s"].as_f64().unwrap() >= 2.0 && report["links"][0]["replies"].as_u64().unwrap() > 0);
 }
 
