@@ -128,7 +128,8 @@ impl Protocol {
     pub const fn carries(self, kind: SensorKind) -> bool {
         match self {
             Protocol::Mpu => kind.is_triad(),
-            Protocol::Mavlink | Protocol::Msp | Protocol::Vectornav | Protocol::Mip => {
+            Protocol::Mavlink => true,
+            Protocol::Msp | Protocol::Vectornav | Protocol::Mip => {
                 kind.is_triad() || matches!(kind, SensorKind::Baro)
             }
             Protocol::Csv | Protocol::Jsonl => true,
@@ -139,7 +140,7 @@ impl Protocol {
     pub const fn about(self) -> &'static str {
         [
             "registers of an MPU-6050 or MPU-9250 in COBS frames with a CRC: imu, gyro, accel, mag, config",
-            "MAVLink 2: HIL_SENSOR (gyro, accel, mag, baro) at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second",
+            "MAVLink 2: HIL_SENSOR (gyro, accel, mag, baro) at each gyro tick, HIL_GPS, HEARTBEAT and SYSTEM_TIME once a second",
             "MSPv2 for INAV: its simulator message (0x201F) with all sensors, at most 100 a second",
             "a VN-100 for ArduPilot: IMU packets at the gyro's rate or that asked for, AHRS packets at 50 Hz",
             "a MicroStrain unit for ArduPilot: pressure, mag, accel and gyro at each gyro tick",
@@ -311,7 +312,9 @@ fn replaced(protocol: Protocol, sensors: &[&SensorPlan]) -> Vec<String> {
         Protocol::Msp => (carrier.rate, format!("a packet {tick}"), String::new()),
         Protocol::Mpu | Protocol::Csv | Protocol::Jsonl => return Vec::new(),
     };
-    let faster = sensors.iter().filter(|sensor| sensor.rate.as_hz() > rate.as_hz());
+    // A fix has a message of its own.
+    let shared = sensors.iter().filter(|sensor| sensor.kind != SensorKind::Gps);
+    let faster = shared.filter(|sensor| sensor.rate.as_hz() > rate.as_hz());
     faster
         .map(|sensor| {
             format!(

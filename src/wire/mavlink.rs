@@ -1,4 +1,5 @@
-//! `mavlink`: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second, and what is asked for besides.
+//! `mavlink`: HIL_SENSOR at each gyro tick, HIL_GPS at each of a receiver's, HEARTBEAT and SYSTEM_TIME once a second,
+//! and what is asked for besides.
 //!
 //! It speaks as a component of the system that the conversation has found, or of system 1.
 //! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
@@ -6,12 +7,13 @@
 //! Forward-Right-Down; the field is in gauss, which is 100 µT, pressure in hPa.
 
 mod extra;
+mod gps;
 
 pub use extra::{Extra, Extras};
 
 use super::{Encoder, EverySecond, Newest, Now, Packet, Protocol, Setup};
 use crate::earth::pressure_altitude;
-use crate::sensor::{ByKind, SensorKind};
+use crate::sensor::{ByKind, Claims, SensorKind};
 use crate::time::SimTime;
 use extra::Sender;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
@@ -47,6 +49,8 @@ pub(super) struct Mavlink {
     counts: [f64; 3],
     /// At whose ticks messages go out: the gyro's, or without one the first sensor's.
     carrier: Option<SensorKind>,
+    /// What the scene's receiver says of its own fixes.
+    claims: Option<Claims>,
     unix_us_at_start: Option<u64>,
     /// Whose temperature is told, where the scene gives one.
     warm: Option<SensorKind>,
@@ -66,7 +70,12 @@ impl Mavlink {
                 .sensors
                 .iter()
                 .map(|sensor| sensor.kind)
-                .find(|kind| Protocol::Mavlink.carries(*kind)),
+                .find(|kind| Protocol::Mavlink.carries(*kind) && *kind != SensorKind::Gps),
+            claims: setup
+                .sensors
+                .iter()
+                .find(|sensor| sensor.kind == SensorKind::Gps)
+                .map(|sensor| Claims::of(&sensor.values)),
             unix_us_at_start: setup.day.map(|day| day.unix_seconds() as u64 * 1_000_000),
             warm: setup
                 .sensors
@@ -178,6 +187,13 @@ impl Encoder for Mavlink {
             let mut buffer = [0; mavlink::MAX_LEN];
             let bytes = self.bytes(&message, &mut buffer);
             out.push(self.newest.packet(t, KINDS, bytes));
+        }
+        let fix = readings.iter().find_map(|reading| reading.fix);
+        if let (Some(fix), Some(claims)) = (fix, &self.claims) {
+            let message = gps::message(t, &fix, claims);
+            let mut buffer = [0; mavlink::MAX_LEN];
+            let bytes = self.bytes(&message, &mut buffer);
+            out.push(self.newest.packet(t, 1 << SensorKind::Gps as u8, bytes));
         }
         self.extras(now, out);
     }

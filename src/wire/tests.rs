@@ -570,8 +570,12 @@ fn what_a_protocol_has_no_place_for_is_said_and_not_sent() {
     let said = |protocol| warnings(protocol, &aided.sensors);
     let mpu = said(Protocol::Mpu);
     assert!(mpu.len() == 2 && mpu[0].contains("no place for baro") && mpu[1].contains("gps"), "{mpu:?}");
-    assert!(said(Protocol::Mavlink)[0].contains("no place for gps"));
-    assert!(said(Protocol::Csv).is_empty() && said(Protocol::Jsonl).is_empty());
+    assert!(said(Protocol::Msp)[0].contains("no place for gps"));
+    assert!(
+        said(Protocol::Mavlink).is_empty()
+            && said(Protocol::Csv).is_empty()
+            && said(Protocol::Jsonl).is_empty()
+    );
     let bare = AIDED.split("[baro]").next().unwrap();
     let bytes = |scene: &str| -> Vec<u8> {
         let (packets, _) = play(&plan(scene), Protocol::Mpu, None);

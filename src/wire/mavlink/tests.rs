@@ -137,3 +137,32 @@ fn px4_is_not_told_the_truth() {
         }
     }
 }
+
+/// A vehicle that flies north-east and climbs: what HIL_GPS says is the receiver's reading, at its ticks and no others.
+#[test]
+fn a_receivers_fixes_go_out_at_its_ticks() {
+    let scene = "duration = \"2 s\"\n\
+        [start]\nvelocity = \"[3, 4, -1] m/s\"\n\
+        [earth]\nlatitude = \"59.93 deg\"\nlongitude = \"30.31 deg\"\naltitude = \"10 m\"\ndate = \"2026-11-22\"\n\
+        [gyro]\nrate = \"100 Hz\"\n\
+        [gps]\nrate = \"5 Hz\"\neph = \"0.9 m\"\nepv = \"1.8 m\"\nsatellites = 11\n";
+    let plan = plan(scene);
+    let mut fixes = Vec::new();
+    for (packet, message) in flown(&play(&plan, Options::default(), None)) {
+        let Message::HilGps(fix) = message else { continue };
+        assert_eq!(packet.carries, 1 << SensorKind::Gps as u8);
+        fixes.push((packet.due, fix));
+    }
+    assert_eq!(fixes.len(), 10);
+    for (k, (due, fix)) in fixes.iter().enumerate() {
+        assert_eq!((due.0, fix.time_usec), (k as i64 * 200_000_000, k as u64 * 200_000));
+        assert_eq!((fix.velocity, fix.vel, fix.fix_type), ([300, 400, -100], 500, 3));
+        assert_eq!((fix.eph, fix.epv, fix.satellites_visible), (90, 180, 11));
+        assert_eq!(fix.cog, 5313, "atan2(4, 3)");
+        // A metre a second up, and 3 m/s north over the meridian's radius of 6.38e6 m at 60 degrees.
+        let t = k as f64 * 0.2;
+        assert_eq!(fix.alt, 10_000 + (t * 1e3).round() as i32);
+        let north = (f64::from(fix.lat) * 1e-7 - 59.93).to_radians() * 6_383_500.0;
+        assert!((north - 3.0 * t).abs() < 0.02, "{north} m after {t} s");
+    }
+}
