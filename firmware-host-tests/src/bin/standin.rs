@@ -68,9 +68,7 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     let since = Instant::now();
     loop {
         match TcpStream::connect(address) {
-            Err(error)
-                if error.kind() == io::ErrorKind::ConnectionRefused && since.elapsed() < PATIENCE =>
-            {
+            Err(error) if error.kind() == io::ErrorKind::ConnectionRefused && since.elapsed() < PATIENCE => {
                 std::thread::sleep(Duration::from_millis(100));
             }
             other => return other,
@@ -95,7 +93,8 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--unanswered" => settings.unanswered = number(&word, &value)?,
             "--rate" => settings.rate_hz = number(&word, &value)?,
             "--param" => {
-                let (name, of) = value.split_once('=').ok_or_else(|| format!("{word}: `{value}` is no NAME=N"))?;
+                let (name, of) =
+                    value.split_once('=').ok_or_else(|| format!("{word}: `{value}` is no NAME=N"))?;
                 settings.parameters.insert(name.to_owned(), number(&word, of)?);
             }
             _ => return Err(format!("unknown option {word}")),

@@ -9,7 +9,7 @@ use std::time::Duration;
 use ratetable::player::Player;
 use ratetable::scene::{Output, Plan};
 use ratetable::sensor::Reading;
-use ratetable::session::{self, Event, Job, Outcome, Speed};
+use ratetable::session::{self, Event, Job, Judging, Outcome, Speed};
 use ratetable::time::SimTime;
 use ratetable_firmware_host_tests::board::{Arrival, Device, Port};
 use ratetable_firmware_host_tests::{Board, Options, Protocol};
@@ -27,17 +27,31 @@ pub fn play_and_tell<T: Send + 'static>(
     to: &str,
     speed: Speed,
     other_side: impl FnOnce(&str) -> T + Send + 'static,
+    on: impl FnMut(&Event<'_>),
+) -> (Outcome, T) {
+    play_after(None, plan, to, speed, other_side, on)
+}
+
+/// [`play_and_tell`] after a rest, for who has to settle first.
+pub fn play_after<T: Send + 'static>(
+    rest: Option<SimTime>,
+    plan: &Arc<Plan>,
+    to: &str,
+    speed: Speed,
+    other_side: impl FnOnce(&str) -> T + Send + 'static,
     mut on: impl FnMut(&Event<'_>),
 ) -> (Outcome, T) {
     let job = Job {
         plan: plan.clone(),
         outputs: vec![Output::to(to.parse().expect("a destination"))],
         end: plan.duration,
+        rest,
+        ground: None,
         speed,
         wait: Duration::from_secs(30),
         command: Vec::new(),
         keep_stdout: false,
-        estimator: "firmware".into(),
+        judging: Judging::default(),
         cpu: None,
         watch: None,
         tap: None,
