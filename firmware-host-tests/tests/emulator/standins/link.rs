@@ -37,7 +37,8 @@ fn play(case: &Case, plan: &Arc<Plan>, speed: Speed) -> (Outcome, Record, Vec<St
         };
         let mut standin = StandIn::new(open(make, place), make.firmware(&settings), clock);
         standin.run(&AtomicBool::new(false)).expect("a link");
-        assert_eq!(standin.unsaid(), 0, "the emulator listens");
+        // Faster than real time so is what it says, and the way back may be full.
+        assert!(speed == Speed::Max || standin.unsaid() == 0, "the emulator listens");
         standin.record().clone()
     };
     let mut notices = Vec::new();
@@ -135,12 +136,9 @@ fn in_real_time_who_stamps_on_arrival_is_off_by_what_arrives_unevenly_and_no_mor
         // How much later than the sender's times samples arrived, at the least and at the most.
         let scene: Vec<_> =
             record.history.iter().filter(|m| m.said_us.is_some_and(|us| us >= rest_us)).collect();
-        let late = |m: &&_| -> i64 {
-            let m: &ratetable_firmware_host_tests::standin::Moment = m;
-            m.t_us as i64 - m.said_us.unwrap_or(0) as i64
-        };
-        let (least, most) = (scene.iter().map(late).min(), scene.iter().map(late).max());
-        let uneven_s = (most.unwrap_or(0) - least.unwrap_or(0)) as f64 * 1e-6;
+        let late: Vec<i64> = scene.iter().map(|m| m.t_us as i64 - m.said_us.unwrap_or(0) as i64).collect();
+        let (least, most) = (late.iter().min().unwrap_or(&0), late.iter().max().unwrap_or(&0));
+        let uneven_s = (most - least) as f64 * 1e-6;
         let errors: Vec<f64> = scene
             .iter()
             .map(|m| {
@@ -152,7 +150,10 @@ fn in_real_time_who_stamps_on_arrival_is_off_by_what_arrives_unevenly_and_no_mor
             .collect();
         let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
         let bound = BOUND_DEG + RATE_DPS * uneven_s;
-        eprintln!("{} in real time: {rms:.3} deg RMS, uneven by {uneven_s:.4} s; {notices:?}", case.make);
+        eprintln!(
+            "{} in real time: {rms:.3} deg RMS, uneven by {uneven_s:.4} s; {counts}; {notices:?}",
+            case.make
+        );
         assert!(errors.len() > 200, "{}: {} estimates", case.make, errors.len());
         assert!(rms < bound, "{}: {rms} deg, and {uneven_s} s uneven allow {bound}", case.make);
     }
@@ -160,8 +161,7 @@ fn in_real_time_who_stamps_on_arrival_is_off_by_what_arrives_unevenly_and_no_mor
 
 #[test]
 fn in_real_time_inav_at_rest_is_told_level() {
-    let plan = Case::of(Make::Inav);
-    let case = plan;
+    let case = Case::of(Make::Inav);
     let sets: Vec<String> = case.sets.iter().copied().chain(["duration=2 s"]).map(str::to_owned).collect();
     let plan = Arc::new(Plan::load("level-then-turn", &sets).unwrap());
     // Twenty seconds of rest in two.
