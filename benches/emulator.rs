@@ -5,7 +5,7 @@ use ratetable::motion::Truth;
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::{Output, Plan};
 use ratetable::sensor::Reading;
-use ratetable::session::{self, Event, Job, Speed};
+use ratetable::session::{self, Event, Job, Judging, Speed};
 use ratetable::wire::{self, Now, Options, Protocol, Setup};
 use std::convert::Infallible;
 use std::hint::black_box;
@@ -99,7 +99,9 @@ fn run(plan: &Arc<Plan>, to: &str) -> u64 {
         wait: Duration::from_secs(10),
         command: Vec::new(),
         keep_stdout: false,
-        estimator: String::new(),
+        rest: None,
+        ground: None,
+        judging: Judging::default(),
         cpu: None,
         watch: None,
         tap: None,

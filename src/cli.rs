@@ -9,6 +9,7 @@ mod listen;
 mod options;
 mod progress;
 mod run;
+mod score;
 mod study;
 mod summary;
 mod timing;
@@ -37,6 +38,8 @@ enum Command {
     Check(check::Arguments),
     /// Measure anybody's stream: rates, intervals, losses and damage of each sensor
     Listen(listen::Arguments),
+    /// Judge recorded attitude estimates and filters against the truth: errors, delay, mistakes of axes and order
+    Score(score::Arguments),
     /// Compare the attitude methods: error against cost on many motions, and what breaks each
     Study(study::Arguments),
     /// Show what there is: scenes, parts, motions, methods, protocols, links, ports
@@ -81,6 +84,7 @@ pub fn main() -> ExitCode {
         Command::Generate(arguments) => generate::generate(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Listen(arguments) => listen::listen(&arguments),
+        Command::Score(arguments) => score::score(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::List(arguments) => list::list(&arguments),
     };

@@ -5,7 +5,7 @@
 //! scene.toml      the scene as resolved: playing it gives the same bytes
 //! manifest.json   version, seed, columns with units, counts, checksums
 //! truth.csv       at every distinct tick of any sensor
-//! gyro.csv accel.csv mag.csv      one for each sensor that the scene has
+//! gyro.csv accel.csv mag.csv baro.csv gps.csv     one for each sensor that the scene has
 //! reference.csv   attitude as a method computes it, where the scene asks for it
 //! estimate.csv    what the other side answered, where it did
 //! imu.yaml        white noise and bias walk as Kalibr takes them, of a scene with gyro and accelerometer
@@ -203,7 +203,8 @@ fn play(
             book.row(table::TRUTH, moment.t, &table::truth(plan.axes, moment.truth))?;
             for reading in moment.readings {
                 clipped[reading.sensor] += u64::from(reading.clipped);
-                book.row(table::TRUTH + 1 + reading.sensor, moment.t, &table::reading(plan.axes, reading))?;
+                let row = table::reading(plan.axes, reading);
+                book.row(table::TRUTH + 1 + reading.sensor, moment.t, row.values())?;
             }
             Ok(())
         })?;

@@ -1,4 +1,9 @@
-//! Gravity and magnetic field at a place.
+//! Gravity, magnetic field and pressure at a place, and the places that are some metres away.
+
+mod atmosphere;
+mod ellipsoid;
+
+pub use atmosphere::{SEA_LEVEL_PRESSURE, pressure, pressure_altitude};
 
 use crate::geometry::{Nav, Vector};
 use world_magnetic_model::GeomagneticField;
@@ -25,6 +30,11 @@ pub struct Place {
     pub longitude: f64,
     /// Above the ellipsoid, m.
     pub altitude: f64,
+}
+
+impl Place {
+    /// Where a scene is that does not say so: on the equator at the prime meridian, at sea level.
+    pub const ORIGIN: Place = Place { latitude: 0.0, longitude: 0.0, altitude: 0.0 };
 }
 
 /// A calendar date.
@@ -65,10 +75,9 @@ impl Day {
 /// WGS 84 normal gravity at the ellipsoid (Somigliana) with the second-order free-air term, m/s², down
 /// (NIMA TR8350.2, third edition, eq. 4-1 and 4-3; good to 10⁻⁶ m/s² below 20 km).
 pub fn normal_gravity(place: Place) -> f64 {
+    use ellipsoid::{A, E2};
     const EQUATOR: f64 = 9.780_325_335_9;
     const K: f64 = 0.001_931_852_652_41;
-    const E2: f64 = 0.006_694_379_990_13;
-    const A: f64 = 6_378_137.0;
     const F: f64 = 1.0 / 298.257_223_563;
     const M: f64 = 0.003_449_786_506_84;
     let sine = libm::sin(place.latitude);

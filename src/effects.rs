@@ -242,10 +242,11 @@ impl Effect {
     }
 }
 
-/// Every effect on every sensor of the scene whose size follows from it, sensor by sensor.
+/// Every effect on every sensor of the scene whose size follows from it, sensor by sensor: on those of three body
+/// axes, of whose truth at a tick the sizes are. A barometer's and a receiver's are not looked for.
 pub fn effects(plan: &Plan) -> Vec<Effect> {
     let mut effects = Vec::new();
-    for sensor in &plan.sensors {
+    for sensor in plan.sensors.iter().filter(|sensor| sensor.kind.is_triad()) {
         let survey = Survey::new(plan, sensor);
         let sheet = datasheet::Sheet::of(&survey);
         for kind in EFFECTS {

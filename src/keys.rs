@@ -34,6 +34,10 @@ pub enum Takes {
     PerAxis(Kind),
     /// A vector in body axes, turned from the scene's axes to Forward-Right-Down.
     BodyVector(Kind),
+    /// A vector in nav axes, turned from the scene's axes to North-East-Down; or one number for all three.
+    NavVector(Kind),
+    /// One number, of a sensor that has no more: it stands for x, and y and z are 0.
+    OneAxis(Kind),
     /// The size of a count, counts a unit, or bits.
     Resolution(Kind),
     /// A time of at least zero, exact in nanoseconds.
@@ -113,7 +117,7 @@ impl fmt::Debug for Text {
 pub enum Value {
     /// Of [`Takes::Scalar`].
     Scalar(Double),
-    /// Of [`Takes::PerAxis`] and [`Takes::BodyVector`].
+    /// Of [`Takes::PerAxis`], [`Takes::BodyVector`], [`Takes::NavVector`] and [`Takes::OneAxis`].
     Triple([Double; 3]),
     /// Of [`Takes::Resolution`].
     Resolution(Resolution),

@@ -23,6 +23,7 @@ pub mod dataset;
 pub mod double;
 pub mod earth;
 pub mod effects;
+pub mod filters;
 pub mod geometry;
 pub mod keys;
 pub mod link;

@@ -18,7 +18,7 @@ mod stepped;
 mod trajectory;
 mod waypoints;
 
-pub use trajectory::{Force, Push, Trajectory, Truth};
+pub use trajectory::{Course, Force, Misfit, Push, Track, Trajectory, Truth};
 
 use crate::double::Double;
 use crate::geometry::{Attitude, Axes, Body, Nav, Vector};

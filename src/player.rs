@@ -7,11 +7,12 @@ mod feed;
 
 pub use feed::Feed;
 
+use crate::earth::Place;
 use crate::geometry::{Body, Vector};
 use crate::motion::{Trajectory, Truth};
 use crate::scene::Plan;
 use crate::schedule::{Due, Schedule, Ticks};
-use crate::sensor::{Block, REFERENCE_TEMPERATURE, Reading, Sensor, SensorKind};
+use crate::sensor::{Block, Fix, REFERENCE_TEMPERATURE, Reading, Sensor, SensorKind};
 use crate::time::SimTime;
 
 /// How many distinct ticks a block holds unless told otherwise.
@@ -50,6 +51,7 @@ impl Columns<'_> {
 
 struct Channel {
     kind: SensorKind,
+    origin: Place,
     sensor: Sensor,
     block: Block,
     /// Samples in earlier blocks.
@@ -78,10 +80,11 @@ impl<'a> Player<'a> {
     /// The same without the error terms called so.
     pub fn without(plan: &'a Plan, end: SimTime, block: usize, left_out: &[&str]) -> Player<'a> {
         let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
+        let origin = plan.origin();
         let channels = plan.sensors.iter().map(|plan_of| {
             let sensor = plan.build_without(plan_of, left_out);
-            let feed = Feed::new(plan_of, plan.seed, &sensor);
-            Channel { kind: plan_of.kind, sensor, block: Block::default(), done: 0, feed }
+            let feed = Feed::new(plan_of, origin, plan.seed, &sensor);
+            Channel { kind: plan_of.kind, origin, sensor, block: Block::default(), done: 0, feed }
         });
         Player {
             trajectory: &plan.trajectory,
@@ -179,15 +182,32 @@ impl Channel {
             bias: at(&self.block.bias),
             clipped: self.block.clipped[i],
             temperature: self.block.temperature.get(i).copied().unwrap_or(REFERENCE_TEMPERATURE),
+            fix: (self.kind == SensorKind::Gps).then(|| self.fix(i)),
+        }
+    }
+
+    /// What a receiver says at a sample, which its block has as metres from the origin.
+    fn fix(&self, i: usize) -> Fix {
+        let at = |columns: &[Vec<f64>; 3]| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
+        Fix {
+            position: self.origin.moved(at(&self.block.reading)),
+            velocity: at(&self.block.velocity),
+            true_position: self.origin.moved(at(&self.block.truth)),
+            true_velocity: at(&self.block.true_velocity),
         }
     }
 }
 
-/// What an error-free sensor of this kind reads, in its unit.
+/// What an error-free sensor of this kind reads, in its unit; nothing of one whose truth is a position, which does not
+/// follow from the truth of an instant.
 pub fn sensed(kind: SensorKind, truth: &Truth) -> Vector<Body> {
     match kind {
         SensorKind::Gyro => truth.rate,
         SensorKind::Accel => truth.force,
         SensorKind::Mag => truth.field,
+        SensorKind::Baro | SensorKind::Gps => Vector::ZERO,
     }
 }
+
+#[cfg(test)]
+mod aids_tests;

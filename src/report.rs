@@ -3,12 +3,14 @@
 pub mod chart;
 mod heard;
 mod limit;
+mod scored;
 mod text;
 mod times;
 mod timing;
 
 pub use heard::{HeardLink, HeardReport, HeardSensor};
 pub use limit::{Limit, LimitError};
+pub use scored::{ScoreReport, Scored};
 pub use text::{number, table};
 pub use times::Times;
 pub use timing::{Baseline, SensorTiming, TimingReport};

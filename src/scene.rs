@@ -20,7 +20,9 @@ mod keyframes;
 mod nested;
 mod numbers;
 mod output;
+mod output_rate;
 pub mod parts;
+mod preset;
 mod reader;
 mod reference;
 mod rest;
@@ -35,7 +37,7 @@ pub use document::Place;
 pub use draw::Drawn;
 pub use faults::OutputFault;
 pub use file::Attached;
-pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS};
+pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS, takes};
 pub use output::{Destination, Output, Overload};
 pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
@@ -73,7 +75,7 @@ pub struct Plan {
     pub limits: Vec<(String, Place)>,
     /// What is true.
     pub trajectory: Trajectory,
-    /// What is sensed: gyro, accel, mag, as far as the scene has them.
+    /// What is sensed: gyro, accel, mag, baro, gps, as far as the scene has them.
     pub sensors: Vec<SensorPlan>,
     /// The attitude to be computed beside the exact truth, if any.
     pub reference: Option<Reference>,
@@ -92,6 +94,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Where it begins: its place, or where latitude, longitude and altitude are 0.
+    pub fn origin(&self) -> earth::Place {
+        self.site.unwrap_or(earth::Place::ORIGIN)
+    }
+
     /// Reads a scene: a path to a TOML file or the name of a built-in, with `--set` overrides.
     ///
     /// # Errors
@@ -134,6 +141,12 @@ impl Plan {
             acted.map(|fault| format!("{} {fault}", sensor.kind)).collect::<Vec<_>>()
         };
         self.sensors.iter().flat_map(of).collect()
+    }
+
+    /// Every fault that the scene asks for: `gyro stuck from 2 s to 3 s`, `drop from 2 s of every output`.
+    pub fn faults(&self) -> Vec<String> {
+        let of_outputs = self.output_faults.iter().map(OutputFault::to_string);
+        self.faults_until(SimTime::FOREVER).into_iter().chain(of_outputs).collect()
     }
 
     /// The scene as resolved, lasting until `end`, with the reference as it was settled: playing it gives the bytes of
@@ -199,9 +212,17 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     let mut outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
     let trajectory =
         Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
+    let trajectory = match start.velocity {
+        Some(velocity) => trajectory.begun_at(velocity),
+        None => trajectory,
+    };
     let reference =
         reference::reference(&top, sensors.complete.then_some(&sensors.plans), &trajectory).unzip();
     let faults = faults::faults(&top, &mut sensors.plans, &mut outputs.outputs);
+    if sensors.plans.iter().any(|sensor| !sensor.kind.is_triad()) {
+        start.settle_velocity(trajectory.start_velocity(), axes);
+        vehicle::misfits(&trajectory, axes).into_iter().for_each(|warning| reader.warn(warning));
+    }
     let moving = trajectory.moving_until();
     let default = (moving > SimTime::ZERO).then(|| moving.to_string());
     // What differs from run to run is the business of whoever makes several.
@@ -215,7 +236,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         if sensors.plans.is_empty() {
             reader.mistake(
                 &whole,
-                "a scene needs at least one sensor, [gyro], [accel] or [mag], with its rate",
+                "a scene needs at least one sensor, [gyro], [accel], [mag], [baro] or [gps], with its rate",
             );
         }
         if duration.is_none() {
@@ -292,6 +313,8 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
+#[cfg(test)]
+mod aids_tests;
 #[cfg(test)]
 mod mistakes_tests;
 #[cfg(test)]

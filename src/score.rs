@@ -8,6 +8,7 @@
 mod clock;
 mod delay;
 mod error;
+mod file;
 mod judge;
 mod looks;
 mod offset;
@@ -16,6 +17,7 @@ mod sampled;
 mod track;
 
 pub use error::AttitudeError;
+pub use file::{FileError, Recorded, read};
 pub use judge::{
     Align, Clock, DelayKnown, Figures, Judged, Options, Row, Stamp, Timed, Truth, judge, judge_readings,
 };

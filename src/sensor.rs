@@ -5,6 +5,7 @@
 //! white noise → range → resolution → reading.
 //! To add a term: one file beside this one and one line in [`TERMS`].
 
+mod aid;
 mod bias;
 mod bias_instability;
 mod bias_temperature;
@@ -17,6 +18,7 @@ mod filter;
 mod flicker;
 mod g_sensitivity;
 mod hard_iron;
+mod kind;
 mod lever_arm;
 mod linear;
 mod matrix;
@@ -31,14 +33,17 @@ mod strides;
 mod temperature;
 mod units;
 mod vibration;
+mod wander;
 pub mod white_noise;
 
+pub use aid::{Claims, Fix, sea_level_pressure};
 pub use bias::settle as settle_bias;
 pub use bias_walk::step as bias_step;
 pub use block::{Block, Column};
 pub use clock_error::{clock, jitter};
 pub use delay::delay;
 pub use fault::{Fault, FaultKind};
+pub use kind::{ByKind, SensorKind};
 pub use lever_arm::{at_arm, lever_arm};
 pub use matrix::matrix;
 pub use mount::Mount;
@@ -49,61 +54,10 @@ pub use units::Units;
 
 use crate::geometry::{Body, Vector};
 use crate::keys::{Key, KeyError, Values};
-use crate::random::{self, Stream};
+use crate::os;
+use crate::random::{self, Normals, Stream};
 use crate::time::{Rate, SimTime};
-use std::fmt;
-
-/// What is sensed. The order is that in which readings due together go out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum SensorKind {
-    /// Angular rate, rad/s.
-    Gyro,
-    /// Specific force, m/s².
-    Accel,
-    /// Magnetic field, µT.
-    Mag,
-}
-
-/// One value for each kind of sensor, by `kind as usize`.
-pub type ByKind<T> = [T; SensorKind::COUNT];
-
-impl SensorKind {
-    /// How many kinds there are.
-    pub const COUNT: usize = 3;
-
-    /// Every kind, in order.
-    pub const ALL: ByKind<SensorKind> = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag];
-
-    /// As scenes, reports and files call it.
-    pub const fn name(self) -> &'static str {
-        ["gyro", "accel", "mag"][self as usize]
-    }
-
-    /// The unit of a reading as a scene spells it.
-    pub const fn unit(self) -> &'static str {
-        ["rad/s", "m/s^2", "uT"][self as usize]
-    }
-
-    /// The unit of a reading as it ends a column's name.
-    pub const fn column_unit(self) -> &'static str {
-        ["rad_s", "m_s2", "ut"][self as usize]
-    }
-
-    /// Which units this sensor's keys take.
-    pub const fn units(self) -> &'static Units {
-        match self {
-            SensorKind::Gyro => &units::GYRO_UNITS,
-            SensorKind::Accel => &units::ACCEL_UNITS,
-            SensorKind::Mag => &units::MAG_UNITS,
-        }
-    }
-}
-
-impl fmt::Display for SensorKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
+use glam::DVec3;
 
 /// How a reading samples the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -157,7 +111,8 @@ impl SensorPlan {
     }
 }
 
-/// One sensor's output, in body axes (Forward-Right-Down) and the sensor's unit.
+/// One sensor's output, in body axes (Forward-Right-Down) and the sensor's unit. Of a barometer the pressure stands
+/// for x; of a GPS receiver the three are metres north, east and down of the start, and `fix` has what it says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Which of the plan's sensors.
@@ -176,6 +131,8 @@ pub struct Reading {
     pub clipped: bool,
     /// The part's temperature, °C.
     pub temperature: f64,
+    /// Of a GPS receiver.
+    pub fix: Option<Fix>,
 }
 
 impl Reading {
@@ -183,7 +140,17 @@ impl Reading {
     pub fn zero(sensor: usize, kind: SensorKind) -> Reading {
         let zero = Vector::ZERO;
         let temperature = REFERENCE_TEMPERATURE;
-        Reading { sensor, kind, k: 0, value: zero, truth: zero, bias: zero, clipped: false, temperature }
+        Reading {
+            sensor,
+            kind,
+            k: 0,
+            value: zero,
+            truth: zero,
+            bias: zero,
+            clipped: false,
+            temperature,
+            fix: None,
+        }
     }
 }
 
@@ -211,12 +178,27 @@ impl Context {
     pub fn streams(&self, term: &str) -> [Stream; 3] {
         random::axes(self.seed, &format!("{}/{term}", self.sensor))
     }
+
+    /// Normal numbers of those streams, on the axes on which `size` is not zero.
+    pub fn normals(&self, term: &str, size: DVec3) -> Normals {
+        let wanted = size.to_array().map(|size| size != 0.0);
+        random::normals(self.seed, &format!("{}/{term}", self.sensor), wanted)
+    }
 }
 
 /// One error of one sensor, applied to its samples in order; what it does never depends on where blocks begin.
 pub trait Term: Send {
-    /// Changes the bias or the reading of every sample of the block.
+    /// Changes the bias or the reading of every sample of the block. Marked `#[inline(always)]`, and so all that it
+    /// calls a sample, for [`Term::act`] to compile it for wider vectors.
     fn apply(&mut self, block: &mut Block);
+
+    /// The same with the widest vectors of this processor.
+    fn act(&mut self, block: &mut Block) {
+        os::widest(
+            #[inline(always)]
+            || self.apply(block),
+        );
+    }
 
     /// Normal numbers that it draws for each sample.
     fn normals(&self) -> usize {
@@ -255,7 +237,7 @@ pub struct TermKind {
 }
 
 /// Every error term, in the order of the chain.
-pub static TERMS: [&TermKind; 20] = [
+pub static TERMS: [&TermKind; 21] = [
     &temperature::KIND,
     &clock_error::KIND,
     &delay::KIND,
@@ -274,13 +256,16 @@ pub static TERMS: [&TermKind; 20] = [
     &bias_temperature::KIND,
     &g_sensitivity::KIND,
     &white_noise::KIND,
+    &aid::VELOCITY_NOISE,
     &range::KIND,
     &resolution::KIND,
 ];
 
-/// Every key of a sensor's error terms.
+/// Every key of a sensor: its error terms', then those of an aid's own.
 pub fn keys(sensor: SensorKind) -> Vec<Key> {
-    TERMS.iter().flat_map(|term| (term.keys)(sensor)).collect()
+    let terms = TERMS.iter().filter(|term| aid::concerns(sensor, term.name));
+    let keys = terms.flat_map(|term| (term.keys)(sensor)).map(|key| aid::turned(sensor, key));
+    keys.chain(aid::keys(sensor)).collect()
 }
 
 /// Everything wrong with a plan's values.
@@ -363,14 +348,14 @@ impl Sensor {
             reading.extend_from_slice(truth);
         }
         for term in &mut self.signals {
-            term.apply(block);
+            term.act(block);
         }
         for bias in &mut block.bias {
             bias.clear();
             bias.resize(n, 0.0);
         }
         for term in &mut self.biases {
-            term.apply(block);
+            term.act(block);
         }
         if !self.biases.is_empty() {
             for (reading, bias) in block.reading.iter_mut().zip(&block.bias) {
@@ -378,7 +363,7 @@ impl Sensor {
             }
         }
         for term in &mut self.readings {
-            term.apply(block);
+            term.act(block);
         }
     }
 }

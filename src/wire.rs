@@ -19,11 +19,11 @@ mod vectornav;
 pub use fault::{Fault, FaultKind};
 pub use faults::{Acts, Faults};
 
-use crate::earth::{Day, STANDARD_GRAVITY, default_field};
+use crate::earth::{Day, Place, STANDARD_GRAVITY, default_field};
 use crate::geometry::{Attitude, Axes, Body, Vector};
 use crate::motion::Truth;
 use crate::schedule::{Schedule, Ticks};
-use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
+use crate::sensor::{ByKind, Fix, Reading, SensorKind, SensorPlan};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
 
@@ -124,15 +124,26 @@ impl Protocol {
         Self::ALL.into_iter().find(|protocol| protocol.name() == name)
     }
 
+    /// Whether it has a place for readings of this kind.
+    pub const fn carries(self, kind: SensorKind) -> bool {
+        match self {
+            Protocol::Mpu => kind.is_triad(),
+            Protocol::Mavlink | Protocol::Msp | Protocol::Vectornav | Protocol::Mip => {
+                kind.is_triad() || matches!(kind, SensorKind::Baro)
+            }
+            Protocol::Csv | Protocol::Jsonl => true,
+        }
+    }
+
     /// One line for `list protocols`.
     pub const fn about(self) -> &'static str {
         [
             "registers of an MPU-6050 or MPU-9250 in COBS frames with a CRC: imu, gyro, accel, mag, config",
-            "MAVLink 2: HIL_SENSOR at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second",
+            "MAVLink 2: HIL_SENSOR (gyro, accel, mag, baro) at each gyro tick, HEARTBEAT and SYSTEM_TIME once a second",
             "MSPv2 for INAV: its simulator message (0x201F) with all sensors, at most 100 a second",
             "a VN-100 for ArduPilot: IMU packets at the gyro's rate or that asked for, AHRS packets at 50 Hz",
             "a MicroStrain unit for ArduPilot: pressure, mag, accel and gyro at each gyro tick",
-            "t_ns,sensor,x,y,z: one line a reading, in the scene's axes",
+            "t_ns,sensor,x,y,z: one line a reading, in the scene's axes (baro: Pa; gps: degrees, altitude, velocity)",
             "the same as one JSON object a line",
         ][self as usize]
     }
@@ -213,9 +224,9 @@ pub trait Encoder: Send {
     }
 }
 
-/// The encoder of a protocol.
+/// The encoder of a protocol; readings that it has no place for do not reach it.
 pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
-    match protocol {
+    let encoder: Box<dyn Encoder> = match protocol {
         Protocol::Mpu => Box::new(mpu::Mpu::new(setup)),
         Protocol::Mavlink => Box::new(mavlink::Mavlink::new(setup)),
         Protocol::Msp => Box::new(msp::Msp::new(setup)),
@@ -223,6 +234,33 @@ pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
         Protocol::Mip => Box::new(mip::Mip::new(setup)),
         Protocol::Csv => Box::new(text::Text::csv(setup)),
         Protocol::Jsonl => Box::new(text::Text::jsonl(setup)),
+    };
+    match setup.sensors.iter().all(|sensor| protocol.carries(sensor.kind)) {
+        true => encoder,
+        false => Box::new(Picky { protocol, encoder, carried: Vec::new() }),
+    }
+}
+
+/// Hands on the readings of the kinds that the protocol carries.
+struct Picky {
+    protocol: Protocol,
+    encoder: Box<dyn Encoder>,
+    carried: Vec<Reading>,
+}
+
+impl Encoder for Picky {
+    fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
+        self.carried.clear();
+        self.carried.extend(now.readings.iter().filter(|reading| self.protocol.carries(reading.kind)));
+        self.encoder.encode(&Now { readings: &self.carried, ..*now }, out);
+    }
+
+    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
+        self.encoder.farewell(t, out);
+    }
+
+    fn waiting(&self) -> ByKind<u64> {
+        self.encoder.waiting()
     }
 }
 
@@ -248,9 +286,18 @@ pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> R
     })
 }
 
-/// What a protocol cannot carry of these sensors, for `check` and the report: a sensor faster than the packets
-/// that carry it loses samples to newer ones.
+/// What a protocol cannot carry of these sensors, for `check` and the report: one that it has no place for is not
+/// sent, and one faster than the packets that carry it loses samples to newer ones.
 pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
+    let (carried, left): (Vec<_>, Vec<_>) = sensors.iter().partition(|sensor| protocol.carries(sensor.kind));
+    let unsent = left.into_iter().map(|sensor| {
+        format!("{} has no place for {}: its readings are not sent", protocol.name(), sensor.kind)
+    });
+    unsent.chain(replaced(protocol, &carried)).collect()
+}
+
+/// What is said of sensors faster than the packets that carry them.
+fn replaced(protocol: Protocol, sensors: &[&SensorPlan]) -> Vec<String> {
     let Some(carrier) = sensors.first() else { return Vec::new() };
     let tick = format!("at each {} tick ({})", carrier.kind, carrier.rate);
     let (rate, packets, fits) = match protocol {
@@ -278,8 +325,11 @@ pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
 /// Bytes and packets a second, found by encoding ten seconds of the scene's own ticks. Text is as long as its
 /// numbers: these have as many digits as noise has.
 pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
-    const MANY_DIGITS: Vector<Body> =
-        Vector::new(-0.012_345_678_901_234_568, -0.012_345_678_901_234_568, -0.012_345_678_901_234_568);
+    const DIGITS: f64 = -0.012_345_678_901_234_568;
+    let value = Vector::new(DIGITS, DIGITS, DIGITS);
+    let position = Place { latitude: DIGITS, longitude: DIGITS, altitude: DIGITS };
+    let velocity = Vector::new(DIGITS, DIGITS, DIGITS);
+    let fix = Fix { position, velocity, true_position: position, true_velocity: velocity };
     let seconds = 10;
     let ticks = setup.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
     let mut encoder = encoder(protocol, setup);
@@ -288,8 +338,11 @@ pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
     for due in Schedule::new(ticks, SimTime(seconds * NANOS)) {
         readings.clear();
         let sensors = setup.sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
-        readings
-            .extend(sensors.map(|(i, plan)| Reading { value: MANY_DIGITS, ..Reading::zero(i, plan.kind) }));
+        readings.extend(sensors.map(|(i, plan)| Reading {
+            value,
+            fix: (plan.kind == SensorKind::Gps).then_some(fix),
+            ..Reading::zero(i, plan.kind)
+        }));
         packets.clear();
         encoder.encode(&Now { t: due.t, truth: &at_rest(due.t), readings: &readings }, &mut packets);
         count += packets.len();

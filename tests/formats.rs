@@ -52,6 +52,12 @@ noise_std = "0.05 m/s^2"
 [mag]
 rate = "70 Hz"
 noise_density = "0.1 uT/√Hz"
+[baro]
+rate = "50 Hz"
+noise_std = "3 Pa"
+[gps]
+noise_std = "1 m"
+velocity_noise_std = "0.1 m/s"
 [reference]
 "#
     )

@@ -1,8 +1,9 @@
 #!/bin/sh
 # Runs all tests, from any directory, on a machine with Rust and Python 3. Arguments go to `cargo test`.
 #
-# The tests with clients and readers of other makes (a MAVLink client, numpy, scipy, pyarrow, mcap, evo, Ray) need Python
-# packages: they are put into .venv here once, and nowhere else. Every optional format is built, so that it is tested.
+# The tests with clients and readers of other makes (a MAVLink client, numpy, scipy, allantools, pyarrow, mcap, evo, Ray)
+# need Python packages: they are put into .venv here once, and nowhere else. Every optional format is built, so that it
+# is tested.
 set -eu
 
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
@@ -12,7 +13,7 @@ requirements=$root/firmware-host-tests/tests/requirements.txt
 installed=$venv/requirements.installed
 
 # A requirement may have changed, or the Python that the environment was made of may be gone.
-if ! cmp -s "$requirements" "$installed" || ! "$python" -c 'import pymavlink.mavutil, serial, scipy, pyarrow, mcap_ros2, evo, ray' 2>/dev/null; then
+if ! cmp -s "$requirements" "$installed" || ! "$python" -c 'import pymavlink.mavutil, serial, scipy, pyarrow, mcap_ros2, evo, allantools, ray, pyulog' 2>/dev/null; then
     if ! command -v python3 >/dev/null; then
         echo "tests/run.sh: python3 is missing: install it (Debian and Ubuntu: apt install python3 python3-venv)" >&2
         exit 2

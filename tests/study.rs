@@ -154,6 +154,8 @@ fn the_cost_of_a_scene_is_told_term_by_term() {
     {
         assert!(cost[field].as_f64().unwrap() > 0.0, "{field}: {cost}");
     }
+    let one = std::thread::available_parallelism().map_or(1, usize::from) == 1;
+    assert!(one && cost["cores"].is_null() || cost["cores"]["times_one"].as_f64().unwrap() > 0.0, "{cost}");
     let terms = cost["terms"].as_array().unwrap();
     let names: Vec<_> = terms.iter().map(|term| term["term"].as_str().unwrap()).collect();
     assert!(names[0] == "truth" && names.contains(&"white_noise"), "{names:?}");

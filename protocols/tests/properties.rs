@@ -45,7 +45,7 @@ fn any_header() -> impl Strategy<Value = Header> {
 /// Any frame, made from any payload.
 fn any_frame() -> impl Strategy<Value = msp::Message> {
     use msp::{Direction, Message, api_version, attitude, fc_variant, simulator, simulator_reply};
-    let direction = prop::sample::select(vec![Direction::Request, Direction::Reply, Direction::Refusal]);
+    let direction = select(vec![Direction::Request, Direction::Reply, Direction::Refusal]);
     prop_oneof![
         (direction, any::<u16>()).prop_map(|(direction, command)| Message::Empty { direction, command }),
         payload(Direction::Request, simulator::COMMAND, simulator::LEN),
@@ -90,7 +90,7 @@ fn any_mip() -> impl Strategy<Value = mip::imu::Repr> {
 
 /// Bytes among which many look like the start of a packet.
 fn rubbish() -> impl Strategy<Value = Vec<u8>> {
-    let starts = prop::sample::select(b"$X<>!\xfa\x01\x21\x07ue\x80*\r\nVN".to_vec());
+    let starts = select(b"$X<>!\xfa\x01\x21\x07ue\x80*\r\nVN".to_vec());
     vec(prop_oneof![any::<u8>(), starts, Just(0)], 0..1500)
 }
 
@@ -347,16 +347,16 @@ proptest! {
         packet in any_vectornav(),
         inertial in any_mip(),
     ) {
-        let mut out = [0; 300];
-        let encoders: [&dyn Fn(&mut [u8]) -> Result<usize, Error>; 3] = [
-            &|out| msp::encode(&frame, out),
-            &|out| vectornav::encode(&packet, out),
-            &|out| mip::encode(&inertial, out),
-        ];
-        for encode in encoders {
-            let len = encode(&mut out).unwrap();
-            prop_assert_eq!(encode(&mut out[..len]), Ok(len));
-            prop_assert_eq!(encode(&mut out[..len - 1]), Err(Error::BufferTooSmall { needed: len }));
-        }
+        needs_its_length(|out| msp::encode(&frame, out))?;
+        needs_its_length(|out| vectornav::encode(&packet, out))?;
+        needs_its_length(|out| mip::encode(&inertial, out))?;
     }
+}
+
+fn needs_its_length(encode: impl Fn(&mut [u8]) -> Result<usize, Error>) -> Result<(), TestCaseError> {
+    let mut out = [0; 300];
+    let len = encode(&mut out).unwrap();
+    prop_assert_eq!(encode(&mut out[..len]), Ok(len));
+    prop_assert_eq!(encode(&mut out[..len - 1]), Err(Error::BufferTooSmall { needed: len }));
+    Ok(())
 }

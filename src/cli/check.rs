@@ -60,6 +60,8 @@ fn shown(kind: SensorKind) -> (&'static str, &'static str, f64) {
         SensorKind::Gyro => ("deg/s", "deg/√s", 1f64.to_degrees()),
         SensorKind::Accel => ("m/s²", "m/s/√s", 1.0),
         SensorKind::Mag => ("µT", "µT·√s", 1.0),
+        SensorKind::Baro => ("Pa", "Pa·√s", 1.0),
+        SensorKind::Gps => ("m", "m·√s", 1.0),
     }
 }
 
@@ -76,7 +78,8 @@ fn budgets(plan: &Plan) -> Vec<Budget> {
 fn warnings(plan: &Plan) -> Vec<String> {
     let mut warnings = plan.warnings.clone();
     for sensor in &plan.sensors {
-        if noise(sensor).is_none() && lsb(&sensor.values, sensor.kind).is_none() {
+        let may_repeat = sensor.kind == SensorKind::Gps;
+        if !may_repeat && noise(sensor).is_none() && lsb(&sensor.values, sensor.kind).is_none() {
             warnings.push(format!(
                 "{} has neither noise nor resolution: while the vehicle is still its readings repeat, and a flight controller takes such a sensor for dead (PX4: 100 equal values in a row)",
                 sensor.kind

@@ -91,7 +91,9 @@ impl Received {
     /// Adds the rates at this end to the report, (n − 1)/(t_last − t_first), and the packets missed.
     pub fn add_to(&self, sensors: &mut [SensorReport], links: &mut [crate::report::LinkReport]) {
         for sensor in sensors {
-            let index = ["gyro", "accel", "mag"].iter().position(|name| *name == sensor.name).unwrap_or(0);
+            let index = ["gyro", "accel", "mag"].iter().position(|name| *name == sensor.name);
+            // What its registers do not have, it does not receive.
+            let Some(index) = index else { continue };
             sensor.received_hz = self.arrivals[index].and_then(|(first, last, before, total)| {
                 let span = last.duration_since(first).as_secs_f64();
                 (span > 0.0).then(|| (total - before) as f64 / span)

@@ -4,6 +4,7 @@ use super::{Refusal, Verdict, say};
 use crate::keys::{Key, Takes};
 use crate::motion::method::{METHODS, MethodKind};
 use crate::report::table;
+use crate::scene::parts::{Filter, OutputRate, Scale, Settings};
 use crate::scene::{self, builtin};
 use crate::sensor::{self, SensorKind, parts};
 use crate::wire::Protocol;
@@ -90,8 +91,27 @@ fn parts() -> Result<String, Refusal> {
         for value in scene::parts::sources(part).map_err(|mistake| Refusal(mistake.to_string()))? {
             text += &format!("  {} {} = {}\n      {}\n", value.sensor, value.key, value.value, value.source);
         }
+        for kind in SensorKind::ALL {
+            let settings =
+                scene::parts::settings(part, kind).map_err(|mistake| Refusal(mistake.to_string()))?;
+            text += &choices(kind, &settings);
+        }
     }
     Ok(text)
+}
+
+/// What a sensor of a part can be set to.
+fn choices(kind: SensorKind, settings: &Settings) -> String {
+    let mut text = String::new();
+    for (name, source) in &settings.sources {
+        let choices = match *name {
+            "scales" => settings.scales.iter().map(Scale::to_string).collect(),
+            "rates" => settings.rates.iter().map(OutputRate::to_string).collect(),
+            _ => settings.filters.iter().map(Filter::to_string).collect::<Vec<_>>(),
+        };
+        text += &format!("  {kind} {name}: {}\n      {source}\n", choices.join("; "));
+    }
+    text
 }
 
 /// Every table and key of a scene.
@@ -108,7 +128,7 @@ fn keys() -> String {
     }
     for sensor in SensorKind::ALL {
         text += &format!("[{sensor}]\n");
-        for (key, about) in scene::SENSOR_KEYS {
+        for (key, about) in scene::SENSOR_KEYS.iter().filter(|(key, _)| scene::takes(sensor, key)) {
             text += &format!("  {key}: {about}\n");
         }
         sensor::keys(sensor).iter().for_each(|key| text += &declared(key));
@@ -119,7 +139,12 @@ fn keys() -> String {
 /// A declared key with what it takes.
 fn declared(key: &Key) -> String {
     let takes = match key.takes {
-        Takes::Scalar(kind) | Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Resolution(kind) => {
+        Takes::Scalar(kind)
+        | Takes::PerAxis(kind)
+        | Takes::BodyVector(kind)
+        | Takes::NavVector(kind)
+        | Takes::OneAxis(kind)
+        | Takes::Resolution(kind) => {
             format!("{}, such as \"{}\"", kind.name(), kind.example())
         }
         Takes::Duration => "time, such as \"2 s\"".into(),

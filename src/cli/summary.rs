@@ -43,6 +43,10 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     if let Some(attitude) = &report.attitude {
         text += &known(attitude);
     }
+    for link in report.links.iter().filter(|link| !link.faults.is_empty()) {
+        let counts: Vec<_> = link.faults.iter().map(|(kind, packets)| format!("{kind} {packets}")).collect();
+        text += &format!("packets that faults acted on, {}: {}\n", link.name, counts.join(", "));
+    }
     for fault in &report.faults {
         text += &format!("fault: {fault}\n");
     }

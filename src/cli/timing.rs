@@ -96,7 +96,8 @@ fn output(arguments: &Arguments, plan: &Plan) -> Result<Output, Refusal> {
     let output = match (&arguments.to, plan.outputs.as_slice()) {
         (Some(to), _) => to.clone(),
         (None, []) => on_a_pty(),
-        (None, [only]) => only.clone(),
+        // Timing is of the stream itself: samples are matched by their place in it.
+        (None, [only]) => Output { faults: Vec::new(), ..only.clone() },
         (None, several) => {
             let names: Vec<_> = several.iter().map(|output| output.to.to_string()).collect();
             return Err(Refusal(format!(

@@ -34,8 +34,8 @@ pub struct Series {
 }
 
 /// Plays `plan` from 0 up to, not including, `end` and gathers its figures, in the scene's axes: one for each sensor
-/// that it has (gyroscope in deg/s, accelerometer in m/s², magnetometer in µT, the readings and the true ones), then
-/// the reference roll, pitch and yaw in degrees.
+/// that it has (gyroscope in deg/s, accelerometer in m/s², magnetometer in µT, barometer in hPa, GPS in m north, east
+/// and down of the start; the readings and the true ones), then the reference roll, pitch and yaw in degrees.
 pub fn figures(plan: &Plan, end: SimTime) -> Vec<Figure> {
     let mut figures: Vec<_> = plan.sensors.iter().map(|sensor| of_sensor(sensor.kind)).collect();
     let mut angles = of_angles();
@@ -44,9 +44,17 @@ pub fn figures(plan: &Plan, end: SimTime) -> Vec<Figure> {
         let truth = table::truth(plan.axes, moment.truth);
         angles.add(t, &truth[4..7], f64::to_degrees);
         for reading in moment.readings {
-            let row = table::reading(plan.axes, reading);
-            let in_unit = if reading.kind == SensorKind::Gyro { f64::to_degrees } else { |value| value };
-            figures[reading.sensor].add(t, &row[..6], in_unit);
+            let in_unit = match reading.kind {
+                SensorKind::Gyro => f64::to_degrees,
+                SensorKind::Baro => |pascals| pascals / 100.0,
+                _ => |value| value,
+            };
+            let values = match reading.kind {
+                SensorKind::Baro => vec![reading.value.v.x, reading.truth.v.x],
+                SensorKind::Gps => [reading.value, reading.truth].map(|v| v.v.to_array()).concat(),
+                _ => table::reading(plan.axes, reading).values()[..6].to_vec(),
+            };
+            figures[reading.sensor].add(t, &values, in_unit);
         }
         Ok::<(), Infallible>(())
     });
@@ -67,10 +75,16 @@ fn of_sensor(kind: SensorKind) -> Figure {
         SensorKind::Gyro => ("Gyroscope", "angular rate, deg/s"),
         SensorKind::Accel => ("Accelerometer", "specific force, m/s²"),
         SensorKind::Mag => ("Magnetometer", "magnetic field, µT"),
+        SensorKind::Baro => ("Barometer", "pressure, hPa"),
+        SensorKind::Gps => ("GPS position from the start", "displacement, m"),
     };
-    let read = ["x", "y", "z"].map(|label| line(label, false));
-    let truth = ["true x", "true y", "true z"].map(|label| line(label, true));
-    let series = read.into_iter().chain(truth).collect();
+    let (read, truth): (&[_], &[_]) = match kind {
+        SensorKind::Baro => (&["pressure"], &["true pressure"]),
+        SensorKind::Gps => (&["north", "east", "down"], &["true north", "true east", "true down"]),
+        _ => (&["x", "y", "z"], &["true x", "true y", "true z"]),
+    };
+    let read = read.iter().map(|label| line(label, false));
+    let series = read.chain(truth.iter().map(|label| line(label, true))).collect();
     Figure { file_stem: kind.name(), title, y_label, series, wraps: false }
 }
 

@@ -6,6 +6,9 @@
 //! | `/imu/gyro`, `/imu/accel` | the same | each by itself, where they have not |
 //! | `/imu/mag` | `sensor_msgs/msg/MagneticField` | magnetometer, in tesla |
 //! | `/imu/gyro/true`, `/imu/gyro/bias` … | `geometry_msgs/msg/Vector3Stamped` | error-free reading and bias in effect: rad/s, m/s², tesla |
+//! | `/baro` | `sensor_msgs/msg/FluidPressure` | barometer, in pascal |
+//! | `/gps/fix` | `sensor_msgs/msg/NavSatFix` | GPS position, in degrees and metres above the ellipsoid |
+//! | `/gps/velocity` | `geometry_msgs/msg/Vector3Stamped` | GPS velocity, in the scene's nav axes |
 //! | `/truth`, `/truth/mag` | `Imu`, `MagneticField` | the exact attitude, angular rate, specific force and field |
 //! | `/reference`, `/estimate` | `geometry_msgs/msg/QuaternionStamped` | attitudes, where the dataset has them |
 //!
@@ -18,18 +21,19 @@ use super::error::DatasetError;
 use super::folder::{Folder, Sink};
 use super::format::{Format, Writer, Written};
 use super::table::{TRUTH, Table};
-use crate::geometry::Axes;
+use crate::geometry::{Axes, Vector};
 use crate::scene::Plan;
 use crate::sensor::{SensorKind, SensorPlan};
 use crate::time::SimTime;
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapError, WriteOptions};
-use messages::{Imu, Kind, Stamped, imu, magnetic_field, quaternion, vector};
+use glam::DVec3;
+use messages::{Imu, Kind, Stamped, fluid_pressure, imu, magnetic_field, nav_sat_fix, quaternion, vector};
 use std::collections::BTreeMap;
 
 pub(super) static FORMAT: Format = Format {
     name: "mcap",
-    about: "one file of ROS 2 messages (`sensor_msgs/msg/Imu`, `MagneticField` in tesla), as rosbag2 records them",
+    about: "one file of ROS 2 messages (`sensor_msgs/msg/Imu`, `MagneticField` in tesla, `FluidPressure`, `NavSatFix`), as rosbag2 records them",
     open,
 };
 
@@ -43,6 +47,7 @@ fn open(plan: &Plan, tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer
     let writer = options.create(folder.file(FILE)?).map_err(failed)?;
     let mut mcap = Mcap {
         writer,
+        axes: plan.axes,
         frames: frames(plan.axes),
         shapes: shapes(plan, tables),
         channels: Vec::new(),
@@ -65,6 +70,8 @@ enum Shape {
     Gyro,
     Accel,
     Mag,
+    Baro,
+    Gps,
     Attitude(&'static str),
 }
 
@@ -84,6 +91,8 @@ impl Shape {
             Shape::Mag => {
                 with_errors(Some(("/imu/mag", Kind::MagneticField)), ["/imu/mag/true", "/imu/mag/bias"])
             }
+            Shape::Baro => vec![("/baro", Kind::FluidPressure)],
+            Shape::Gps => vec![("/gps/fix", Kind::NavSatFix), ("/gps/velocity", Kind::Vector)],
             Shape::Attitude("estimate") => vec![("/estimate", Kind::Quaternion)],
             Shape::Attitude(_) => vec![("/reference", Kind::Quaternion)],
         }
@@ -110,6 +119,8 @@ fn shapes(plan: &Plan, tables: &[Table]) -> Vec<Shape> {
         (SensorKind::Accel, true) => Shape::Both,
         (SensorKind::Accel, false) => Shape::Accel,
         (SensorKind::Mag, _) => Shape::Mag,
+        (SensorKind::Baro, _) => Shape::Baro,
+        (SensorKind::Gps, _) => Shape::Gps,
     };
     let readings = plan.sensors.iter().map(sensor);
     let others = tables[TRUTH + 1 + plan.sensors.len()..].iter().map(|table| Shape::Attitude(table.name));
@@ -126,6 +137,7 @@ fn frames(axes: Axes) -> [&'static str; 2] {
 
 struct Mcap {
     writer: ::mcap::Writer<Sink>,
+    axes: Axes,
     /// Nav and body.
     frames: [&'static str; 2],
     shapes: Vec<Shape>,
@@ -228,6 +240,17 @@ impl Writer for Mcap {
             Shape::Mag => {
                 magnetic_field(in_body, first, bytes);
                 self.send(table, 0, t)?;
+            }
+            Shape::Baro => {
+                fluid_pressure(in_body, values[0], bytes);
+                return self.send(table, 0, t);
+            }
+            Shape::Gps => {
+                nav_sat_fix(in_body, first, bytes);
+                self.send(table, 0, t)?;
+                let velocity = self.axes.nav_out(Vector::from_vec(DVec3::from_array(triple(3))));
+                vector(Stamped { t, frame: nav }, velocity.to_array(), &mut self.bytes);
+                return self.send(table, 1, t);
             }
             Shape::Attitude(_) => {
                 quaternion(Stamped { t, frame: nav }, std::array::from_fn(|i| values[i]), bytes);

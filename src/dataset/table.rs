@@ -1,9 +1,10 @@
 //! The tables of a dataset: their columns, and a row of each in the scene's axes.
 
-use crate::geometry::{Attitude, Axes, Body, Euler, Vector};
+use crate::earth::{Place, pressure_altitude};
+use crate::geometry::{Attitude, Axes, Body, Euler, Nav, Vector};
 use crate::motion::Truth;
 use crate::scene::Plan;
-use crate::sensor::{Reading, SensorKind};
+use crate::sensor::{Fix, Reading, SensorKind};
 
 /// A column: its name, which ends in its unit, and the unit by itself.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
@@ -27,6 +28,23 @@ pub struct Table {
 pub(super) const TRUTH: usize = 0;
 
 const QUATERNION: [(&str, &str); 4] = [("qw", "1"), ("qx", "1"), ("qy", "1"), ("qz", "1")];
+/// A barometer's, and what follows from the pressure that it reads.
+const BARO: [(&str, &str); 5] = [
+    ("pressure_pa", "Pa"),
+    ("true_pressure_pa", "Pa"),
+    ("bias_pa", "Pa"),
+    ("pressure_altitude_m", "m"),
+    ("temperature_degc", "degC"),
+];
+/// A receiver's fix: position, then velocity north, east and down, whatever the scene's axes.
+const FIX: [(&str, &str); 6] = [
+    ("lat_deg", "deg"),
+    ("lon_deg", "deg"),
+    ("alt_m", "m"),
+    ("vn_m_s", "m/s"),
+    ("ve_m_s", "m/s"),
+    ("vd_m_s", "m/s"),
+];
 const EULER: [(&str, &str); 3] = [("roll_rad", "rad"), ("pitch_rad", "rad"), ("yaw_rad", "rad")];
 
 /// The tables of a plan, the reference behind the sensors where there is one, the estimate's last where there is one.
@@ -49,7 +67,15 @@ fn truth_table() -> Table {
 }
 
 fn sensor_table(kind: SensorKind) -> Table {
-    table(kind.name(), ["", "true_", "bias_"].into_iter().flat_map(|prefix| triple(prefix, kind)))
+    let columns: Vec<Column> = match kind {
+        SensorKind::Baro => BARO.map(column).into(),
+        SensorKind::Gps => ["", "true_"]
+            .into_iter()
+            .flat_map(|prefix| FIX.map(|(of, unit)| Column { name: format!("{prefix}{of}"), unit }))
+            .collect(),
+        _ => ["", "true_", "bias_"].into_iter().flat_map(|prefix| triple(prefix, kind)).collect(),
+    };
+    table(kind.name(), columns)
 }
 
 fn table(name: &'static str, columns: impl IntoIterator<Item = Column>) -> Table {
@@ -83,7 +109,47 @@ pub(super) fn reference(axes: Axes, attitude: Attitude) -> [f64; 7] {
 }
 
 /// A row of a sensor after `t_ns`.
-pub(super) fn reading(axes: Axes, reading: &Reading) -> [f64; 9] {
+pub(super) enum Row {
+    /// Reading, truth and bias.
+    Triad([f64; 9]),
+    Baro([f64; 5]),
+    Gps([f64; 12]),
+}
+
+impl Row {
+    /// Its numbers.
+    pub fn values(&self) -> &[f64] {
+        match self {
+            Row::Triad(values) => values,
+            Row::Baro(values) => values,
+            Row::Gps(values) => values,
+        }
+    }
+}
+
+/// A row of a sensor after `t_ns`.
+pub(super) fn reading(axes: Axes, reading: &Reading) -> Row {
+    match (reading.kind, &reading.fix) {
+        (SensorKind::Baro, _) => {
+            let (value, temperature) = (reading.value.v.x, reading.temperature);
+            let altitude = pressure_altitude(value);
+            Row::Baro([value, reading.truth.v.x, reading.bias.v.x, altitude, temperature])
+        }
+        (_, Some(Fix { position, velocity, true_position, true_velocity })) => {
+            let [lat, lon, alt, vn, ve, vd] = fix(*position, *velocity);
+            let [tlat, tlon, talt, tvn, tve, tvd] = fix(*true_position, *true_velocity);
+            Row::Gps([lat, lon, alt, vn, ve, vd, tlat, tlon, talt, tvn, tve, tvd])
+        }
+        _ => Row::Triad(triad(axes, reading)),
+    }
+}
+
+fn fix(position: Place, velocity: Vector<Nav>) -> [f64; 6] {
+    let [vn, ve, vd] = velocity.v.to_array();
+    [position.latitude.to_degrees(), position.longitude.to_degrees(), position.altitude, vn, ve, vd]
+}
+
+fn triad(axes: Axes, reading: &Reading) -> [f64; 9] {
     let vector = |v: Vector<Body>| axes.body_out(v).to_array();
     let ([x, y, z], [tx, ty, tz], [bx, by, bz]) =
         (vector(reading.value), vector(reading.truth), vector(reading.bias));

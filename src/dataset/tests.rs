@@ -163,7 +163,7 @@ fn a_row_holds_the_bits_that_were_played() {
         .play(|moment| {
             same(&truths.next().unwrap(), &table::truth(plan.axes, moment.truth));
             for reading in moment.readings {
-                same(&sensors[reading.sensor].next().unwrap(), &table::reading(plan.axes, reading));
+                same(&sensors[reading.sensor].next().unwrap(), table::reading(plan.axes, reading).values());
             }
             Ok::<(), std::convert::Infallible>(())
         })
@@ -671,4 +671,48 @@ fn a_fault_is_told_and_its_missing_samples_are_not_counted() {
     assert_eq!((&json["sensors"][0]["samples"], &json["sensors"][1]["samples"]), (&150.into(), &100.into()));
     let rows = fs::read_to_string(out.join("gyro.csv")).unwrap().lines().count();
     assert_eq!(rows, 151);
+}
+
+#[test]
+fn an_aids_tables_have_what_it_reads_beside_what_is_true() {
+    let aids = "[baro]\nrate = \"10 Hz\"\nbias = \"50 Pa\"\n[gps]\nnoise_std = \"1 m\"\nvelocity_noise_std = \"0.1 m/s\"\n";
+    let plan = parsed(&format!(
+        "duration = \"20 s\"\n[earth]\nlatitude = \"50 deg\"\nlongitude = \"8 deg\"\naltitude = \"100 m\"\ndate = \"2026-11-22\"\n[start]\nvelocity = \"[0, 10, -1] m/s\"\n[gyro]\nrate = \"10 Hz\"\n{aids}"
+    ));
+    let files = written(&plan, plan.duration, player::BLOCK);
+    let header = |name: &str| std::str::from_utf8(&files[name]).unwrap().lines().next().unwrap().to_string();
+    assert_eq!(
+        header("baro.csv"),
+        "t_ns,pressure_pa,true_pressure_pa,bias_pa,pressure_altitude_m,temperature_degc"
+    );
+    assert_eq!(
+        header("gps.csv"),
+        "t_ns,lat_deg,lon_deg,alt_m,vn_m_s,ve_m_s,vd_m_s,true_lat_deg,true_lon_deg,true_alt_m,true_vn_m_s,true_ve_m_s,true_vd_m_s"
+    );
+    let numbers = |name: &str| -> Vec<Vec<f64>> {
+        rows(&files, name).iter().map(|row| row.iter().map(|cell| cell.parse().unwrap()).collect()).collect()
+    };
+    let (baro, gps) = (numbers("baro.csv"), numbers("gps.csv"));
+    assert_eq!((baro.len(), gps.len()), (200, 100));
+    for row in &baro {
+        let expected = crate::earth::pressure(100.0 + row[0] * 1e-9, 101_325.0);
+        assert!((row[2] - expected).abs() < 1e-6 && (row[1] - row[2] - 50.0).abs() < 1e-9 && row[3] == 50.0);
+        assert_eq!((row[4], row[5]), (crate::earth::pressure_altitude(row[1]), 25.0));
+    }
+    for row in &gps {
+        let t = row[0] * 1e-9;
+        let there = plan.origin().moved(crate::geometry::Vector::new(0.0, 10.0 * t, -t));
+        let expected =
+            [there.latitude.to_degrees(), there.longitude.to_degrees(), there.altitude, 0.0, 10.0, -1.0];
+        for (found, expected) in row[7..].iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{row:?}");
+        }
+        assert!((row[1] - row[7]).abs() < 1e-4 && row[1] != row[7] && (row[5] - row[11]).abs() < 1.0);
+    }
+    let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
+    assert_eq!(manifest["sensors"][2]["name"], "gps");
+    assert_eq!(manifest["sensors"][1]["samples"], 200);
+    let figures = figures(&plan, plan.duration);
+    let lines: Vec<_> = figures.iter().map(|figure| (figure.file_stem, figure.series.len())).collect();
+    assert_eq!(lines, [("gyro", 6), ("baro", 2), ("gps", 6), ("angles", 3)]);
 }

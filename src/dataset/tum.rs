@@ -48,7 +48,7 @@ impl Writer for Tum {
             if i > 0 {
                 self.line.push(b' ');
             }
-            self.line.extend_from_slice(shortest(value, &mut self.digits).as_bytes());
+            self.line.extend_from_slice(shortest(value, &mut self.digits));
         }
         self.line.push(b'\n');
         sink.put(&self.line)

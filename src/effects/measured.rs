@@ -41,7 +41,8 @@ pub(super) fn measure(survey: &Survey<'_>, term: &str) -> Option<Found> {
 /// What the sensor is given at its first ticks.
 fn error_free(survey: &Survey<'_>, sensor: &Sensor) -> Block {
     let (plan, path) = (survey.sensor, survey.trajectory());
-    let (mut block, mut feed) = (Block::default(), Feed::new(plan, survey.plan.seed, sensor));
+    let (mut block, mut feed) =
+        (Block::default(), Feed::new(plan, survey.plan.origin(), survey.plan.seed, sensor));
     for k in 0..survey.ticks.min(TICKS) {
         let t = plan.phase + plan.clock().tick(k);
         feed.push(t, &path.at(t), path, &mut block);

@@ -142,7 +142,7 @@ pub(super) fn key(survey: &Survey<'_>, term: &str) -> Option<String> {
 fn says_something(key: &Key, values: &Values) -> bool {
     match key.takes {
         Takes::Scalar(_) => values.scalar(key.name).is_some_and(|value| value != 0.0),
-        Takes::PerAxis(_) | Takes::BodyVector(_) => {
+        Takes::PerAxis(_) | Takes::BodyVector(_) | Takes::NavVector(_) | Takes::OneAxis(_) => {
             values.vector(key.name).is_some_and(|value| value != DVec3::ZERO)
         }
         Takes::Flag => values.flag(key.name) == Some(true),

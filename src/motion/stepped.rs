@@ -6,7 +6,8 @@
 //! never on which were asked before, and nothing adds up.
 
 use super::Motion;
-use crate::geometry::{Attitude, Body, Nav, Vector};
+use crate::geometry::{Attitude, Nav, Vector};
+use crate::os;
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 
@@ -55,11 +56,16 @@ impl Stepped {
             }
             return many;
         }
-        self.within(since.map(|since| (since.0 - self.from) as f64))
+        let ns = since.map(|since| (since.0 - self.from) as f64);
+        os::widest(
+            #[inline(always)]
+            || self.within(ns),
+        )
     }
 
     /// So many nanoseconds into the cell. The same operations on each of several columns, which the processor does on
     /// two at a time.
+    #[inline(always)]
     fn within<const N: usize>(&self, ns: [f64; N]) -> Many<N> {
         let DQuat { x, y, z, w } = self.cell;
         let mut q = [[0.0; N]; 4];
@@ -89,21 +95,27 @@ impl<const N: usize> Many<N> {
         Attitude::from_quat(DQuat::from_xyzw(x[i], y[i], z[i], w[i]))
     }
 
-    /// What they make of a nav vector in body axes: [`rotate`](crate::geometry::rotate) by the inverse, column by
-    /// column.
-    pub(super) fn to_body(&self, v: Vector<Nav>) -> [Vector<Body>; N] {
+    /// What they make of a nav vector in body axes: [`rotate`](crate::geometry::rotate) by the inverse, as columns
+    /// x, y, z.
+    pub(super) fn to_body(&self, v: Vector<Nav>) -> [[f64; N]; 3] {
+        os::widest(
+            #[inline(always)]
+            || self.seen(v),
+        )
+    }
+
+    #[inline(always)]
+    fn seen(&self, v: Vector<Nav>) -> [[f64; N]; 3] {
         let [x, y, z, w] = &self.q;
         let v = v.v;
-        let mut seen = [Vector::ZERO; N];
+        let mut seen = [[0.0; N]; 3];
         for i in 0..N {
             let (bx, by, bz) = (-x[i], -y[i], -z[i]);
             let (tx, ty, tz) =
                 (2.0 * (by * v.z - v.y * bz), 2.0 * (bz * v.x - v.z * bx), 2.0 * (bx * v.y - v.x * by));
-            seen[i] = Vector::new(
-                v.x + w[i] * tx + (by * tz - ty * bz),
-                v.y + w[i] * ty + (bz * tx - tz * bx),
-                v.z + w[i] * tz + (bx * ty - tx * by),
-            );
+            seen[0][i] = v.x + w[i] * tx + (by * tz - ty * bz);
+            seen[1][i] = v.y + w[i] * ty + (bz * tx - tz * bx);
+            seen[2][i] = v.z + w[i] * tz + (bx * ty - tx * by);
         }
         seen
     }
@@ -116,6 +128,7 @@ const COS: [f64; 7] =
     [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
 
 /// The polynomial of these coefficients, the constant one first.
+#[inline(always)]
 fn series<const N: usize>(square: f64, coefficients: &[f64; N]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * square + coefficient)
 }
@@ -142,7 +155,7 @@ mod tests {
                 assert_eq!(q, Stepped::new(rate).at(&*motion, start, [t]).attitude(0), "{rate} at {t}");
                 let v = Vector::new(3.0, -1.0, 9.80665);
                 let seen = stepped.at(&*motion, start, [t]).to_body(v);
-                assert_eq!(seen[0], q.inverse().apply(v));
+                assert_eq!(Vector::new(seen[0][0], seen[1][0], seen[2][0]), q.inverse().apply(v));
             }
             // Several at once, across the ends of cells too, are each as it is alone.
             for k in 0..2000i64 {

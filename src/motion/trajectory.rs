@@ -1,6 +1,9 @@
 //! The whole truth of a scene: segments one after another, forces over them, gravity and field.
 
+mod track;
 mod turning;
+
+pub use track::{Course, Misfit, Track};
 
 use super::stepped::Stepped;
 use super::{Kinematics, Motion, rest};
@@ -66,6 +69,8 @@ pub struct Trajectory {
     forces: Vec<Force>,
     gravity: Vector<Nav>,
     field: Vector<Nav>,
+    /// At t = 0, where it is given.
+    velocity: Option<Vector<Nav>>,
 }
 
 impl Trajectory {
@@ -87,7 +92,7 @@ impl Trajectory {
         }
         let (start, attitude) = next;
         segments.push(Segment { start, end: SimTime::FOREVER, attitude, motion: rest() });
-        Trajectory { segments, forces, gravity, field }
+        Trajectory { segments, forces, gravity, field, velocity: None }
     }
 
     /// The sum of the motions' durations: from there on the vehicle holds.
@@ -180,11 +185,13 @@ impl Trajectory {
         let since = times.map(|t| t - segment.start);
         let many = stepped.at(&*segment.motion, segment.attitude, since);
         let (force, field) = (many.to_body(-self.gravity), many.to_body(self.field));
-        for i in 0..N {
-            let (t, attitude, mut force) = (times[i], many.attitude(i), force[i]);
+        let vector =
+            |columns: &[[f64; N]; 3], i: usize| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
+        truth.extend((0..N).map(|i| {
+            let (t, attitude, mut force) = (times[i], many.attitude(i), vector(&force, i));
             self.pushes(t, attitude.inverse()).for_each(|push| force += push);
-            truth.push(Truth { t, attitude, rate, force, field: field[i] });
-        }
+            Truth { t, attitude, rate, force, field: vector(&field, i) }
+        }));
     }
 
     fn segment(&self, t: SimTime) -> &Segment {
@@ -206,11 +213,15 @@ impl Trajectory {
     }
 
     fn pushes(&self, t: SimTime, to_body: Rotation<Nav, Body>) -> impl Iterator<Item = Vector<Body>> {
-        let active = self.forces.iter().filter(move |force| force.start <= t && t < force.end);
-        active.map(move |force| match force.push {
+        self.active(t).map(move |push| match push {
             Push::Body(push) => push,
             Push::Nav(push) => to_body.apply(push),
         })
+    }
+
+    /// The external accelerations at `t`.
+    fn active(&self, t: SimTime) -> impl Iterator<Item = Push> {
+        self.forces.iter().filter(move |force| force.start <= t && t < force.end).map(|force| force.push)
     }
 
     /// The means of rate, force and field over `[from, to)`, as an integrating sensor sees them; the attitude is
@@ -252,6 +263,12 @@ impl Trajectory {
     }
 
     fn quadrature(&self, segment: &Segment, from: SimTime, to: SimTime, mut add: impl FnMut(Truth, f64)) {
+        self.nodes(segment, from, to, |since, _, weight| add(self.in_segment(segment, from, since), weight));
+    }
+
+    /// Where a mean over `[from, to)` looks, none of it beyond a seam: seconds from the segment's start, the share of
+    /// the way that lies behind, and the weight; weights add to 1.
+    fn nodes(&self, segment: &Segment, from: SimTime, to: SimTime, mut at: impl FnMut(Double, f64, f64)) {
         let span = (to - from).seconds();
         let panels = (segment.motion.fastest() * span).ceil().max(1.0);
         for panel in 0..panels as u64 {
@@ -260,7 +277,7 @@ impl Trajectory {
             for (node, weight) in GAUSS_LEGENDRE_8 {
                 for x in [0.5 - 0.5 * node, 0.5 + 0.5 * node] {
                     let since = (from - segment.start).exact_seconds() + Double::from(left + x * width);
-                    add(self.in_segment(segment, from, since), 0.5 * weight / panels);
+                    at(since, (panel as f64 + x) / panels, 0.5 * weight / panels);
                 }
             }
         }

@@ -1,14 +1,16 @@
 //! What a sensor is given at its ticks: its error-free reading and, where its terms need it, more of the truth.
 
 use super::sensed;
+use crate::earth::{self, Place};
 use crate::geometry::{Body, Vector};
-use crate::motion::{Trajectory, Truth};
-use crate::random::Stream;
+use crate::motion::{Course, Track, Trajectory, Truth};
+use crate::random::Normals;
 use crate::sensor::block::{self, Block, Column};
-use crate::sensor::{Sampling, Sensor, SensorKind, SensorPlan, at_arm, delay, jitter, lever_arm};
+use crate::sensor::{
+    Sampling, Sensor, SensorKind, SensorPlan, at_arm, delay, jitter, lever_arm, sea_level_pressure,
+};
 use crate::time::SimTime;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 
 /// Fills a sensor's blocks from the truth, in order of time.
 #[derive(Debug)]
@@ -20,20 +22,24 @@ pub struct Feed {
     arm: Option<DVec3>,
     /// The tick before and when it was sensed, for the mean.
     last: Option<[SimTime; 2]>,
+    /// Of a sensor whose truth is a position.
+    aid: Option<Box<Aid>>,
 }
 
 impl Feed {
-    /// For a plan's sensor, before its first tick; `seed` is the scene's.
-    pub fn new(plan: &SensorPlan, seed: u64, sensor: &Sensor) -> Feed {
+    /// For a plan's sensor, before its first tick; `origin` is where the scene begins, `seed` is the scene's.
+    pub fn new(plan: &SensorPlan, origin: Place, seed: u64, sensor: &Sensor) -> Feed {
         let arm = lever_arm(&plan.values).filter(|_| sensor.needs(Column::LeverArm));
         let sensing = if sensor.needs(Column::Late) { Sensing::of(plan, seed) } else { Sensing::default() };
         let force = sensor.needs(Column::Force);
-        Feed { kind: plan.kind, sampling: plan.sampling, sensing, force, arm, last: None }
+        let aid = (!plan.kind.is_triad()).then(|| Box::new(Aid::new(plan, origin)));
+        Feed { kind: plan.kind, sampling: plan.sampling, sensing, force, arm, last: None, aid }
     }
 
     /// Whether a sample follows from the truth at its tick alone, so that [`Feed::extend`] will do.
     pub(super) fn is_plain(&self) -> bool {
-        self.sampling == Sampling::Point && self.sensing.is_at_ticks() && self.arm.is_none()
+        let at_ticks = self.sampling == Sampling::Point && self.sensing.is_at_ticks();
+        at_ticks && self.arm.is_none() && self.aid.is_none()
     }
 
     /// Adds samples that are the truth at their ticks.
@@ -47,6 +53,9 @@ impl Feed {
     /// Adds the sample at `t`, at which this is the truth.
     pub fn push(&mut self, t: SimTime, truth: &Truth, path: &Trajectory, block: &mut Block) {
         let at = self.sensing.time(t);
+        if let Some(aid) = &mut self.aid {
+            return aid.push(t, (!self.sensing.is_at_ticks()).then_some(at), path, block);
+        }
         let last = self.last.replace([t, at]).filter(|_| self.sampling == Sampling::Average);
         let seen = last.map_or(*truth, |[last, _]| path.mean(last, t));
         block.push(sensed(self.kind, &seen).v.to_array());
@@ -71,19 +80,63 @@ impl Feed {
     }
 }
 
+/// A barometer or a GPS receiver: what it is given follows from where the vehicle is.
+#[derive(Debug)]
+struct Aid {
+    kind: SensorKind,
+    origin: Place,
+    /// Pa.
+    sea_level: f64,
+    /// At the ticks, and at the times of sensing: each goes forward.
+    now: Option<Track>,
+    late: Option<Track>,
+}
+
+impl Aid {
+    fn new(plan: &SensorPlan, origin: Place) -> Aid {
+        let sea_level = sea_level_pressure(&plan.values);
+        Aid { kind: plan.kind, origin, sea_level, now: None, late: None }
+    }
+
+    /// Adds the sample at `t`, and what was true at `late`, where it is sensed at another time.
+    fn push(&mut self, t: SimTime, late: Option<SimTime>, path: &Trajectory, block: &mut Block) {
+        let now = self.now.get_or_insert_with(|| Track::new(path)).at(path, t);
+        block.push(self.sensed(now));
+        let late = late.map(|late| self.late.get_or_insert_with(|| Track::new(path)).at(path, late));
+        if let Some(late) = late {
+            block::push(&mut block.late, self.sensed(late));
+        }
+        if self.kind == SensorKind::Gps {
+            block::push(&mut block.true_velocity, now.velocity.v.to_array());
+            block::push(&mut block.velocity, late.unwrap_or(now).velocity.v.to_array());
+        }
+    }
+
+    /// The error-free reading.
+    fn sensed(&self, course: Course) -> [f64; 3] {
+        match self.kind {
+            SensorKind::Baro => {
+                let altitude = self.origin.altitude - course.position.v.z;
+                [earth::pressure(altitude, self.sea_level), 0.0, 0.0]
+            }
+            _ => course.position.v.to_array(),
+        }
+    }
+}
+
 /// When samples are sensed, which a delay and a clock's jitter put off their ticks.
 #[derive(Debug, Default)]
 struct Sensing {
     delay: SimTime,
     /// Standard deviation and bound of the jitter, ns, and where it comes from.
-    jitter: Option<(f64, f64, Stream)>,
+    jitter: Option<(f64, f64, Normals)>,
 }
 
 impl Sensing {
     fn of(plan: &SensorPlan, seed: u64) -> Sensing {
-        let [stream, ..] = plan.context(seed).streams("clock_error");
+        let normals = plan.context(seed).normals("clock_error", DVec3::X);
         let (sigma, bound) = (jitter(&plan.values) * 1e9, 0.4e9 * plan.clock().period());
-        Sensing { delay: delay(&plan.values), jitter: (sigma > 0.0).then_some((sigma, bound, stream)) }
+        Sensing { delay: delay(&plan.values), jitter: (sigma > 0.0).then_some((sigma, bound, normals)) }
     }
 
     fn is_at_ticks(&self) -> bool {
@@ -92,8 +145,8 @@ impl Sensing {
 
     /// When the sample of the next tick, at `t`, is sensed: never before the start.
     fn time(&mut self, t: SimTime) -> SimTime {
-        let off = self.jitter.as_mut().map_or(0, |(sigma, bound, stream)| {
-            let n: f64 = StandardNormal.sample(stream);
+        let off = self.jitter.as_mut().map_or(0, |(sigma, bound, normals)| {
+            let [n, ..] = normals.draw();
             libm::round((*sigma * n).clamp(-*bound, *bound)) as i64
         });
         SimTime((t - self.delay).0.saturating_add(off)).max(SimTime::ZERO)

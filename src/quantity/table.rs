@@ -17,6 +17,8 @@ const MAG_DENSITY: Dimension = FIELD.with(Base::Time, 1);
 /// The dimension of a resolution in bits.
 pub(super) const BITS: Dimension = Dimension::NONE.with(Base::Bit, 2);
 
+const PRESSURE: Dimension = Dimension::NONE.with(Base::Mass, 2).with(Base::Length, -2).with(Base::Time, -4);
+
 /// Every way to give a step: per count, counts per unit, the step alone, bits.
 const GYRO_STEPS: &[Dimension] = &[
     ANGULAR_RATE.with(Base::Count, -2),
@@ -32,6 +34,14 @@ const ACCEL_STEPS: &[Dimension] = &[
 ];
 const MAG_STEPS: &[Dimension] =
     &[FIELD.with(Base::Count, -2), FIELD.with(Base::Field, -2).with(Base::Count, 2), FIELD, BITS];
+const BARO_STEPS: &[Dimension] = &[
+    PRESSURE.with(Base::Count, -2),
+    Dimension::NONE.with(Base::Mass, -2).with(Base::Length, 2).with(Base::Time, 4).with(Base::Count, 2),
+    PRESSURE,
+    BITS,
+];
+const POSITION_STEPS: &[Dimension] =
+    &[LENGTH.with(Base::Count, -2), LENGTH.with(Base::Length, -2).with(Base::Count, 2), LENGTH, BITS];
 
 const fn kind(
     name: &'static str,
@@ -196,12 +206,45 @@ impl Kind {
     )
     .signed(Sign::NonNegative);
     /// A pressure, in Pa.
-    pub const PRESSURE: Kind = kind(
-        "pressure",
-        &[Dimension::NONE.with(Base::Mass, 2).with(Base::Length, -2).with(Base::Time, -4)],
-        "1013 hPa",
-        &["Pa", "hPa"],
-    );
+    pub const PRESSURE: Kind = kind("pressure", &[PRESSURE], "1013 hPa", &["Pa", "hPa"]);
+    /// A barometer's one-sided noise density, in Pa/√Hz; 0 or above.
+    pub const BARO_DENSITY: Kind =
+        kind("pressure noise density", &[PRESSURE.with(Base::Time, -3)], "0.5 Pa/rtHz", &["Pa/rtHz"])
+            .signed(Sign::NonNegative);
+    /// A barometer's noise variance per sample, in Pa²; 0 or above.
+    pub const BARO_VARIANCE: Kind = kind(
+        "pressure noise variance",
+        &[Dimension::NONE.with(Base::Mass, 4).with(Base::Length, -4).with(Base::Time, -8)],
+        "4 Pa^2",
+        &["Pa^2"],
+    )
+    .signed(Sign::NonNegative);
+    /// A random walk of a barometer's bias, in Pa/√s; 0 or above.
+    pub const BARO_WALK: Kind =
+        kind("pressure bias random walk", &[PRESSURE.with(Base::Time, -5)], "0.1 Pa/rts", &["Pa/rts"])
+            .signed(Sign::NonNegative);
+    /// A barometer's step, see [`Self::resolution`]: Pa per count, its inverse, Pa, or bits.
+    pub const BARO_RESOLUTION: Kind =
+        kind("pressure resolution", BARO_STEPS, "1.2 Pa", &["Pa", "Pa/LSB", "LSB/Pa"]).signed(Sign::Positive);
+    /// A barometer's bias per kelvin, in Pa/K.
+    pub const BARO_PER_KELVIN: Kind =
+        kind("pressure bias per kelvin", &[PRESSURE.with(Base::Temperature, -2)], "1.5 Pa/K", &["Pa/K"]);
+    /// A position's one-sided noise density, in m/√Hz; 0 or above.
+    pub const POSITION_DENSITY: Kind =
+        kind("position noise density", &[LENGTH.with(Base::Time, 1)], "0.5 m/rtHz", &["m/rtHz"])
+            .signed(Sign::NonNegative);
+    /// A position's noise variance per sample, in m²; 0 or above.
+    pub const POSITION_VARIANCE: Kind =
+        kind("position noise variance", &[LENGTH.with(Base::Length, 4)], "4 m^2", &["m^2"])
+            .signed(Sign::NonNegative);
+    /// A random walk of a position's bias, in m/√s; 0 or above.
+    pub const POSITION_WALK: Kind =
+        kind("position bias random walk", &[LENGTH.with(Base::Time, -1)], "0.02 m/rts", &["m/rts"])
+            .signed(Sign::NonNegative);
+    /// A position's step, see [`Self::resolution`]: m per count, its inverse, m, or bits.
+    pub const POSITION_RESOLUTION: Kind =
+        kind("position resolution", POSITION_STEPS, "0.01 m", &["m", "m/LSB", "LSB/m"])
+            .signed(Sign::Positive);
 
     /// Every kind; of those with the same dimension, the first names it in messages.
     pub const ALL: &[Kind] = &[
@@ -236,8 +279,17 @@ impl Kind {
         Self::GYRO_SPECTRUM,
         Self::ACCEL_SPECTRUM,
         Self::PRESSURE,
+        Self::BARO_DENSITY,
+        Self::BARO_VARIANCE,
+        Self::BARO_WALK,
+        Self::BARO_PER_KELVIN,
+        Self::POSITION_DENSITY,
+        Self::POSITION_VARIANCE,
+        Self::POSITION_WALK,
         Self::GYRO_RESOLUTION,
         Self::ACCEL_RESOLUTION,
         Self::MAG_RESOLUTION,
+        Self::BARO_RESOLUTION,
+        Self::POSITION_RESOLUTION,
     ];
 }

@@ -2,6 +2,8 @@
 
 use super::document::Value;
 use super::section::Section;
+use crate::double::Double;
+use crate::geometry::Axes;
 use crate::keys::{self, Key, Takes, Values};
 use crate::quantity::{Kind, Sign};
 
@@ -46,6 +48,15 @@ impl Section<'_> {
                 let [x, y, z] = self.vector(name, kind, zero(kind).as_deref())?;
                 keys::Value::Triple([x, y * sign, z * sign])
             }
+            Takes::NavVector(kind) => {
+                let given = self.vector(name, kind, zero(kind).as_deref())?;
+                keys::Value::Triple(nav_in(self.axes(), kind, given))
+            }
+            Takes::OneAxis(kind) => {
+                let text = zero(kind);
+                let x = self.measured(name, text.as_deref(), kind.example(), |text| kind.scalar(text))?;
+                keys::Value::Triple([x, Double::ZERO, Double::ZERO])
+            }
             Takes::Resolution(kind) => {
                 keys::Value::Resolution(
                     self.measured(name, key.default, kind.example(), |text| kind.resolution(text))?,
@@ -61,5 +72,14 @@ impl Section<'_> {
             Takes::Whole(least, most) => keys::Value::Whole(self.whole_within(key, least, most)?),
             Takes::Table(nested) => keys::Value::Tables(self.nested(name, &nested, may_draw)?),
         })
+    }
+}
+
+/// A nav vector as written, taken inside: another order of axes, and down for up where it has a sign.
+pub(super) fn nav_in(axes: Axes, kind: Kind, [x, y, z]: [Double; 3]) -> [Double; 3] {
+    match axes {
+        Axes::NedFrd => [x, y, z],
+        Axes::EnuFlu if kind.is_magnitude() => [y, x, z],
+        Axes::EnuFlu => [y, x, -z],
     }
 }

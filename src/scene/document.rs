@@ -152,7 +152,7 @@ impl Table {
     /// # Errors
     /// The first place that is not TOML.
     pub fn parse(text: &str, name: &str) -> Result<Table, Mistake> {
-        let source = Source { text, name: name.into() };
+        let source = Source::new(text, name);
         match DeTable::parse(text) {
             Ok(table) => Ok(source.table(table.get_ref(), 0)),
             Err(error) => {
@@ -259,9 +259,16 @@ fn value_of(text: &str, place: &Place) -> Value {
 struct Source<'a> {
     text: &'a str,
     name: Arc<str>,
+    /// Where each line begins.
+    lines: Vec<usize>,
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    fn new(text: &'a str, name: &str) -> Source<'a> {
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(end, _)| end + 1)).collect();
+        Source { text, name: name.into(), lines }
+    }
+
     /// What the TOML reader found, and what its commonest reasons mean here.
     fn not_toml(&self, found: &str, span: Range<usize>) -> String {
         let found = found.replace('\n', "; ");
@@ -286,9 +293,10 @@ impl Source<'_> {
     }
 
     fn place(&self, offset: usize) -> Place {
-        let before = &self.text[..offset.min(self.text.len())];
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+        let offset = offset.min(self.text.len());
+        let line = self.lines.partition_point(|&start| start <= offset);
+        let begins = self.lines.get(line.saturating_sub(1)).copied().unwrap_or_default();
+        let column = self.text[begins..offset].chars().count() + 1;
         Place { source: self.name.clone(), position: Some((line, column)) }
     }
 

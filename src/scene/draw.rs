@@ -1,15 +1,15 @@
 //! Values drawn once a run: `noise_std = { uniform = ["0.001 rad/s", "0.003 rad/s"] }`.
 
+use super::declared::nav_in;
 use super::document::{Node, Table, Value};
 use super::section::Section;
 use crate::geometry::Vector;
 use crate::keys::{self, Key, Takes};
 use crate::quantity::{self, Kind, Sign};
-use crate::random::{self, Stream};
-use crate::sensor::{self, SensorPlan};
+use crate::random;
+use crate::sensor::{self, SensorKind, SensorPlan};
 use glam::{DMat3, DVec3};
 use rand::RngExt;
-use rand_distr::{Distribution, StandardNormal};
 
 /// A value that was drawn once for this run.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -24,20 +24,20 @@ impl Section<'_> {
     /// A value drawn once a run: `{ uniform = [low, high] }` or `{ normal = [mean, std] }`, each axis by itself.
     pub(super) fn draw(&self, key: &Key, table: &Table) -> Option<keys::Value> {
         let (kind, scalar) = match key.takes {
-            Takes::Scalar(kind) => (kind, true),
-            Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::Matrix(kind) => (kind, false),
+            Takes::Scalar(kind) | Takes::OneAxis(kind) => (kind, true),
+            Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::NavVector(kind) | Takes::Matrix(kind) => {
+                (kind, false)
+            }
             _ => {
                 self.mistake(key.name, "cannot be drawn from a distribution");
                 return None;
             }
         };
         let (shape, low, high) = self.distribution(key.name, kind, table)?;
-        let axes: &[usize] = if scalar { &[0] } else { &[0, 1, 2] };
+        let fresh = shape.fresh(self.reader.seed.get(), &format!("draw/{}/{}", self.path, key.name));
         let mut drawn = [0.0; 3];
-        for &axis in axes {
-            let name = format!("draw/{}/{}/{}", self.path, key.name, ["x", "y", "z"][axis]);
-            let mut stream = random::stream(self.reader.seed.get(), &name);
-            let value = shape.sample(low[axis], high[axis], &mut stream);
+        for axis in if scalar { 0..1 } else { 0..3 } {
+            let value = shape.value(low[axis], high[axis], fresh[axis]);
             // The size of a noise has no sign; the tail of a normal distribution is folded over.
             drawn[axis] = if kind.is_magnitude() { value.abs() } else { value };
         }
@@ -52,7 +52,8 @@ impl Section<'_> {
         let sign = self.reader.axes.get().body_sign();
         Some(match key.takes {
             Takes::Scalar(_) => keys::Value::Scalar(drawn[0].into()),
-            Takes::PerAxis(_) => keys::Value::Triple(drawn.map(Into::into)),
+            Takes::PerAxis(_) | Takes::OneAxis(_) => keys::Value::Triple(drawn.map(Into::into)),
+            Takes::NavVector(_) => keys::Value::Triple(nav_in(self.axes(), kind, drawn.map(Into::into))),
             Takes::Matrix(_) => keys::Value::Matrix(DMat3::from_diagonal(DVec3::from_array(drawn))),
             _ => keys::Value::Triple([drawn[0], drawn[1] * sign, drawn[2] * sign].map(Into::into)),
         })
@@ -62,8 +63,14 @@ impl Section<'_> {
     pub(super) fn settle_bias(&self, plan: &mut SensorPlan) {
         let context = plan.context(self.seed());
         let Some(bias) = sensor::settle_bias(&mut plan.values, &context) else { return };
-        let text =
-            quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), plan.kind.unit());
+        let unit = plan.kind.unit();
+        let text = match plan.kind {
+            SensorKind::Baro => quantity::text_scalar(bias.x, unit),
+            SensorKind::Gps => {
+                quantity::text_vector(self.axes().nav_out(Vector::from_vec(bias)).to_array(), unit)
+            }
+            _ => quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), unit),
+        };
         self.reader
             .draws
             .borrow_mut()
@@ -125,13 +132,19 @@ enum Shape {
 }
 
 impl Shape {
-    fn sample(self, a: f64, b: f64, stream: &mut Stream) -> f64 {
+    /// A number an axis from the distribution's standard form, of the streams of this name.
+    fn fresh(self, seed: u64, name: &str) -> [f64; 3] {
         match self {
-            Shape::Uniform => a + (b - a) * stream.random::<f64>(),
-            Shape::Normal => {
-                let n: f64 = StandardNormal.sample(stream);
-                a + b * n
-            }
+            Shape::Uniform => random::axes(seed, name).map(|mut stream| stream.random::<f64>()),
+            Shape::Normal => random::normals(seed, name, [true; 3]).draw(),
+        }
+    }
+
+    /// What that stands for between two ends, or about a mean and with a standard deviation.
+    fn value(self, a: f64, b: f64, fresh: f64) -> f64 {
+        match self {
+            Shape::Uniform => a + (b - a) * fresh,
+            Shape::Normal => a + b * fresh,
         }
     }
 }

@@ -1,6 +1,8 @@
 //! The keys that a scene knows besides those which motions and error terms declare: name and meaning, for
 //! `ratetable list keys`.
 
+use crate::sensor::SensorKind;
+
 /// Table, key, meaning; the scene itself is the table `""`.
 pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("", "name", "what reports and datasets call it (default: the file's name)"),
@@ -19,6 +21,11 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ),
     ("start", "attitude", "roll, pitch, yaw at t = 0: \"[0, 0, 0] deg\""),
     ("start", "quaternion", "instead: [w, x, y, z], body to nav"),
+    (
+        "start",
+        "velocity",
+        "over the ground at t = 0, a nav vector: \"[15, 0, 0] m/s\" (default: the first motion's own speed along the heading, 0 where it has none); for [baro] and [gps]",
+    ),
     ("earth", "gravity", "its strength, or the acceleration of free fall as a nav vector: \"9.80665 m/s^2\""),
     ("earth", "field", "the magnetic field, a nav vector: \"[20, 0, 45] uT\""),
     ("earth", "latitude", "of a place: normal gravity (WGS 84) and the field (World Magnetic Model)"),
@@ -31,7 +38,7 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("force", "duration", "how long it acts"),
     ("force", "acceleration", "a vector in `frame`"),
     ("force", "frame", "\"body\" (default) or \"nav\""),
-    ("fault", "sensor", "\"gyro\", \"accel\" or \"mag\""),
+    ("fault", "sensor", "\"gyro\", \"accel\", \"mag\", \"baro\" or \"gps\""),
     (
         "fault",
         "output",
@@ -105,9 +112,15 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("output", "force", "true: start although the baud rate does not carry the packets (default false)"),
 ];
 
+/// Whether a sensor has one of [`SENSOR_KEYS`]: a barometer and a GPS receiver are no parts on the chip's axes, and
+/// sample the moment.
+pub fn takes(sensor: SensorKind, key: &str) -> bool {
+    sensor.is_triad() || !["sampling", "mount", "part"].contains(&key)
+}
+
 /// Keys of every sensor besides its error terms'.
 pub const SENSOR_KEYS: &[(&str, &str)] = &[
-    ("rate", "output data rate, such as \"1 kHz\" or \"400/3 Hz\""),
+    ("rate", "output data rate, such as \"1 kHz\" or \"400/3 Hz\" (of [gps] \"5 Hz\" by default)"),
     ("phase", "when tick 0 is due (default \"0 s\")"),
     ("sampling", "\"point\" (default), or \"average\" over the interval that ends at the tick"),
     ("mount", "where the chip's x, y and z point, such as \"flu\", or a quaternion from body to chip"),

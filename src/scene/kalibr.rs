@@ -28,7 +28,7 @@ fn keys(kind: SensorKind) -> Option<[Known; 3]> {
             ("accelerometer_noise_density", "velocity_random_walk", "m/s^2/√Hz", true),
             ("accelerometer_random_walk", "bias_random_walk", "m/s^3/√Hz", true),
         ]),
-        SensorKind::Mag => None,
+        _ => None,
     }
 }
 

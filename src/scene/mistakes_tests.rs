@@ -218,7 +218,7 @@ const SENSORS: &[Case] = &[
         "duration = \"1 s\"\n[[gyro]]\nrate = \"1 Hz\"\n",
         &[("2:1", "`gyro` is an array; write it as one table, [gyro]")],
     ),
-    ("duration = \"1 s\"\n", &[("1:1", "at least one sensor, [gyro], [accel] or [mag]")]),
+    ("duration = \"1 s\"\n", &[("1:1", "at least one sensor, [gyro], [accel], [mag], [baro] or [gps]")]),
 ];
 
 const MOTIONS: &[Case] = &[
@@ -348,7 +348,7 @@ const REST: &[Case] = &[
     ),
     (
         gyro!("[[output]]\nto = \"mpuu@pty\"\n"),
-        &[("5:6", "`mpuu` is no protocol of this version (mpu, mavlink, csv, jsonl); did you mean `mpu`?")],
+        &[("5:6", "`mpuu` is no protocol of this version (mpu, mavlink, |did you mean `mpu`?")],
     ),
     (
         gyro!("[reference]\nmethod = \"magnus\"\n"),

@@ -101,9 +101,9 @@ impl Section<'_> {
         self.measured(key, default, "5 s", |text| quantity::duration_ns(text, sign)).map(SimTime)
     }
 
-    /// A sensor's rate.
-    pub fn rate(&self, key: &'static str) -> Option<Rate> {
-        let (numerator, denominator) = self.measured(key, None, "100 Hz", quantity::rate)?;
+    /// A sensor's rate, or the default.
+    pub fn rate(&self, key: &'static str, default: Option<&str>) -> Option<Rate> {
+        let (numerator, denominator) = self.measured(key, default, "100 Hz", quantity::rate)?;
         Rate::new(numerator, denominator)
     }
 

@@ -146,7 +146,7 @@ fn stepping(section: &Section<'_>) -> Option<Stepping> {
     if section.has("tolerance") {
         section.mistake("tolerance", format!("goes with method = \"{AUTO}\": `{name}` errs as it errs"));
     }
-    let rate = section.has("rate").then(|| section.rate("rate"));
+    let rate = section.has("rate").then(|| section.rate("rate", None));
     let method = find(&name);
     if method.is_none() {
         let names: Vec<_> = METHODS.iter().map(|method| method.name).chain([AUTO]).collect();

@@ -4,7 +4,7 @@ pub use crate::keys::{did_you_mean, nearest};
 
 /// What a key known from another tool, or from another table, is called in the table `path` (empty: the scene).
 pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
-    if !["", "gyro", "accel", "mag"].contains(&path) {
+    if !["", "gyro", "accel", "mag", "baro", "gps"].contains(&path) {
         return None;
     }
     let answer = match key {

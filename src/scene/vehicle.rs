@@ -6,7 +6,7 @@ use super::suggest;
 use crate::double::Double;
 use crate::earth::{self, Day};
 use crate::geometry::{Attitude, Axes, Nav, Vector};
-use crate::motion::{self, Context, Force, Motion, Push};
+use crate::motion::{self, Context, Force, Misfit, Motion, Push, Trajectory};
 use crate::quantity::{self, Kind, Sign};
 use crate::time::SimTime;
 use glam::DVec3;
@@ -20,15 +20,19 @@ pub(super) struct Start {
     pub attitude: Attitude,
     /// Whether the scene says so.
     given: bool,
+    /// Over the ground, m/s, where the scene says it.
+    pub velocity: Option<Vector<Nav>>,
     pub resolved: toml::Table,
 }
 
-/// `[start]`: three angles or a quaternion.
+/// `[start]`: three angles or a quaternion, and a velocity.
 pub(super) fn start(top: &Section<'_>) -> Start {
     let section = top.table("start");
     let given = section.has("attitude") || section.has("quaternion");
     let attitude = section.attitude(Some("[0, 0, 0] deg")).unwrap_or(Attitude::IDENTITY);
-    Start { attitude, given, resolved: section.finish() }
+    let velocity = section.vector("velocity", Kind::SPEED, None);
+    let velocity = velocity.map(|velocity| section.axes().nav_in(plain(velocity)));
+    Start { attitude, given, velocity, resolved: section.finish() }
 }
 
 impl Start {
@@ -38,6 +42,14 @@ impl Start {
         self.attitude = attitude;
         self.resolved.remove("attitude");
         self.resolved.insert("quaternion".into(), vec![q.w, q.x, q.y, q.z].into());
+    }
+
+    /// Says in the scene as resolved with which velocity it begins, where that matters and it left it open.
+    pub fn settle_velocity(&mut self, velocity: Vector<Nav>, axes: Axes) {
+        if self.velocity.is_none() {
+            let text = quantity::text_vector(axes.nav_out(velocity).to_array(), "m/s");
+            self.resolved.insert("velocity".into(), text.into());
+        }
     }
 }
 
@@ -230,6 +242,24 @@ fn motion(
             None
         }
     }
+}
+
+/// What a user should know whose vehicle comes to a motion at another velocity than that means.
+pub(super) fn misfits(trajectory: &Trajectory, axes: Axes) -> Vec<String> {
+    let text = |v: Vector<Nav>| {
+        // Whole millimetres: it is to be read.
+        let rounded = axes.nav_out(v).to_array().map(|x| libm::round(x * 1e3) / 1e3 + 0.0);
+        quantity::text_vector(rounded, "m/s")
+    };
+    let warn = |misfit: &Misfit| {
+        format!(
+            "the motion at {} means a velocity of {} when it begins, but the vehicle comes to it with {}: its position drifts by the difference; give the `velocity` of [start]",
+            misfit.start,
+            text(misfit.meant),
+            text(misfit.found)
+        )
+    };
+    trajectory.misfits().iter().map(warn).collect()
 }
 
 pub(super) struct Forces {

@@ -4,7 +4,7 @@ use super::delay::{self, Fit, Series};
 use super::looks::{ALIKE, BAD, MISTAKES, SHARE, heading_offset, turned_back};
 use super::sampled::Sampled;
 use super::{AttitudeError, clock, offset};
-use crate::geometry::Attitude;
+use crate::geometry::{Attitude, Axes};
 use crate::time::SimTime;
 use glam::DQuat;
 use serde::Serialize;
@@ -66,11 +66,19 @@ pub struct Options {
     pub from: SimTime,
     /// Until when.
     pub until: SimTime,
+    /// The axes in which the estimates were written before they were read, and in which mistakes were made.
+    pub axes: Axes,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { align: Align::None, clock: Clock::Scene, from: SimTime::ZERO, until: SimTime::FOREVER }
+        Options {
+            align: Align::None,
+            clock: Clock::Scene,
+            from: SimTime::ZERO,
+            until: SimTime::FOREVER,
+            axes: Axes::NedFrd,
+        }
     }
 }
 
@@ -179,6 +187,8 @@ pub fn judge_readings(
         let others = others.map(|(name, attitudes)| (*name, series(&|i| attitudes[i]).thinned(LOOK)));
         let undone = |undo: fn(DQuat) -> DQuat| {
             let Series { times, attitudes } = given.thinned(LOOK);
+            let axes = options.axes;
+            let undo = |q| axes.attitude_in(undo(axes.attitude_out(Attitude::from_quat(q)))).q;
             Series { times, attitudes: attitudes.into_iter().map(undo).collect() }
         };
         let mistakes = MISTAKES.iter().map(|mistake| (mistake.name, undone(mistake.undo)));
@@ -303,11 +313,13 @@ impl Bench<'_> {
         }
     }
 
-    /// Where nothing better is known: the times as given, or the first estimate at the first truth.
+    /// Where nothing better is known: the times as given; on a clock of its own the first estimate at the first truth,
+    /// which is right of a vehicle at rest and of no other.
     fn fallback(&self, series: &Series) -> Option<i64> {
         match self.options.clock {
             Clock::Scene => Some(0),
-            Clock::Foreign => Some(series.times.first()? - self.options.from.0),
+            Clock::Foreign if self.grid.is_still() => Some(series.times.first()? - self.options.from.0),
+            Clock::Foreign => None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! The truth on an even grid: for a search that looks at it a million times.
 
 use super::judge::Truth;
-use crate::geometry::log;
+use crate::geometry::{angle_between, log};
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 
@@ -41,6 +41,11 @@ impl Sampled {
         let (i, _) = self.place(t)?;
         let (a, b) = (self.points[i], *self.points.get(i + 1)?);
         Some(log(b * a.conjugate()) / (self.step as f64 * 1e-9))
+    }
+
+    /// Whether it never turns, but for a thousandth of a rad.
+    pub fn is_still(&self) -> bool {
+        self.points.first().is_some_and(|first| self.points.iter().all(|q| angle_between(*first, *q) < 1e-3))
     }
 
     fn place(&self, t: i64) -> Option<(usize, f64)> {

@@ -5,7 +5,6 @@ use crate::double::Double;
 use crate::keys::{Key, Takes, Value, Values};
 use crate::quantity::Sign;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias",
@@ -40,11 +39,7 @@ pub(super) static KIND: TermKind = TermKind {
 pub fn settle(values: &mut Values, context: &Context) -> Option<DVec3> {
     let spread = values.vector("bias_std").filter(|spread| *spread != DVec3::ZERO)?;
     let mut bias = values.vector("bias").unwrap_or_default();
-    let mut streams = context.streams("bias");
-    for axis in (0..3).filter(|&axis| spread[axis] != 0.0) {
-        let draw: f64 = StandardNormal.sample(&mut streams[axis]);
-        bias[axis] += spread[axis] * draw;
-    }
+    bias += spread * DVec3::from_array(context.normals("bias", spread).draw());
     let triple = |v: DVec3| Value::Triple(v.to_array().map(Double::from));
     values.insert("bias", triple(bias));
     values.insert("bias_std", triple(DVec3::ZERO));
@@ -54,6 +49,7 @@ pub fn settle(values: &mut Values, context: &Context) -> Option<DVec3> {
 struct Bias(DVec3);
 
 impl Term for Bias {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for axis in 0..3 {
             block.bias[axis].iter_mut().for_each(|bias| *bias += self.0[axis]);

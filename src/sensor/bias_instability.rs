@@ -4,12 +4,12 @@
 //! τ = `correlation_time`, started from its stationary distribution unless asked to start from zero. Its Allan
 //! deviation peaks at 0.617 σ, at 1.89 τ (IEEE Std 952-1997, annex C).
 
+use super::wander::wander;
 use super::{Block, Stage, Term, TermKind, flicker};
 use crate::keys::{Key, KeyError, Takes};
 use crate::quantity::{Kind, Sign};
-use crate::random::Stream;
+use crate::random::Normals;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_instability",
@@ -65,11 +65,11 @@ pub(super) static KIND: TermKind = TermKind {
         let steps = context.rate.period() / tau;
         let decay = DVec3::from_array(steps.to_array().map(|x| libm::exp(-x)));
         let fresh = DVec3::from_array(steps.to_array().map(|x| libm::sqrt(-libm::expm1(-2.0 * x))));
-        let mut streams = context.streams("bias_instability");
-        let start = DVec3::from_array(streams.each_mut().map(|stream| StandardNormal.sample(stream)));
+        let mut normals = context.normals("bias_instability", sigma);
+        let start = DVec3::from_array(normals.draw());
         let bias =
             if values.word("bias_instability_start") == Some("zero") { DVec3::ZERO } else { sigma * start };
-        Ok(Some(Box::new(GaussMarkov { bias, decay, step: sigma * fresh, streams })))
+        Ok(Some(Box::new(GaussMarkov { bias, decay, step: sigma * fresh, normals })))
     },
 };
 
@@ -77,23 +77,18 @@ struct GaussMarkov {
     bias: DVec3,
     decay: DVec3,
     step: DVec3,
-    streams: [Stream; 3],
+    normals: Normals,
 }
 
 impl Term for GaussMarkov {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
-        for axis in (0..3).filter(|&axis| self.step[axis] != 0.0) {
-            let (mut state, stream) = (self.bias[axis], &mut self.streams[axis]);
-            for bias in &mut block.bias[axis] {
-                *bias += state;
-                let n: f64 = StandardNormal.sample(stream);
-                state = self.decay[axis] * state + self.step[axis] * n;
-            }
-            self.bias[axis] = state;
-        }
+        let (decay, step) = (self.decay.to_array(), self.step.to_array());
+        let next = move |axis: usize, bias, n| decay[axis] * bias + step[axis] * n;
+        self.bias = wander(&mut self.normals, self.bias, &mut block.bias, next);
     }
 
     fn normals(&self) -> usize {
-        self.step.to_array().iter().filter(|&&step| step != 0.0).count()
+        self.normals.count()
     }
 }

@@ -11,9 +11,10 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Bias,
     needs: &[],
     keys: |sensor| {
+        let Some(per_kelvin) = sensor.units().per_kelvin else { return vec![] };
         vec![Key {
             name: "bias_temperature",
-            takes: Takes::BodyVector(sensor.units().per_kelvin),
+            takes: Takes::BodyVector(per_kelvin),
             default: Some("0"),
             about: "bias per kelvin from 25 degC: acts where a `temperature` is given",
         }]
@@ -28,6 +29,7 @@ pub(super) static KIND: TermKind = TermKind {
 struct PerKelvin(DVec3);
 
 impl Term for PerKelvin {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for (column, factor) in block.bias.iter_mut().zip(self.0.to_array()) {
             for (bias, temperature) in column.iter_mut().zip(&block.temperature) {

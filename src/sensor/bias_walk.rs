@@ -3,12 +3,12 @@
 //! `b ← b + σ·n` after each sample, with σ = `bias_step_std` (paper: `n_bg`, whatever the rate), or
 //! σ = K·√dt with K = `bias_random_walk`, whose growth K·√t does not depend on the rate.
 
+use super::wander::wander;
 use super::{Block, Context, Stage, Term, TermKind};
 use crate::keys::{Key, Takes, Values};
 use crate::quantity::Sign;
-use crate::random::Stream;
+use crate::random::Normals;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_walk",
@@ -35,7 +35,8 @@ pub(super) static KIND: TermKind = TermKind {
     build: |values, context| {
         let step = step(values, context);
         Ok((step != DVec3::ZERO).then(|| {
-            Box::new(Walk { step, bias: DVec3::ZERO, streams: context.streams("bias_walk") }) as Box<dyn Term>
+            let normals = context.normals("bias_walk", step);
+            Box::new(Walk { step, bias: DVec3::ZERO, normals }) as Box<dyn Term>
         }))
     },
 };
@@ -51,23 +52,18 @@ pub fn step(values: &Values, context: &Context) -> DVec3 {
 struct Walk {
     step: DVec3,
     bias: DVec3,
-    streams: [Stream; 3],
+    normals: Normals,
 }
 
 impl Term for Walk {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
-        for axis in (0..3).filter(|&axis| self.step[axis] != 0.0) {
-            let (mut walk, step, stream) = (self.bias[axis], self.step[axis], &mut self.streams[axis]);
-            for bias in &mut block.bias[axis] {
-                *bias += walk;
-                let n: f64 = StandardNormal.sample(stream);
-                walk += step * n;
-            }
-            self.bias[axis] = walk;
-        }
+        let step = self.step.to_array();
+        let next = move |axis: usize, walk, n| walk + step[axis] * n;
+        self.bias = wander(&mut self.normals, self.bias, &mut block.bias, next);
     }
 
     fn normals(&self) -> usize {
-        self.step.to_array().iter().filter(|&&step| step != 0.0).count()
+        self.normals.count()
     }
 }

@@ -37,6 +37,10 @@ pub struct Block {
     /// Acceleration at the lever arm beyond that of the point that moves, m/s²; empty unless a term needs
     /// [`Column::LeverArm`].
     pub arm: Columns,
+    /// The velocity that a GPS receiver reads, m/s in nav axes; empty of any other sensor.
+    pub velocity: Columns,
+    /// The true velocity; empty likewise.
+    pub true_velocity: Columns,
     /// The part's temperature, °C; empty where the scene does not give it.
     pub temperature: Vec<f64>,
 }
@@ -61,6 +65,8 @@ impl Block {
             &mut self.force,
             &mut self.late,
             &mut self.arm,
+            &mut self.velocity,
+            &mut self.true_velocity,
         ] {
             columns.iter_mut().for_each(Vec::clear);
         }

@@ -73,6 +73,7 @@ pub fn jitter(values: &Values) -> f64 {
 struct Jitter;
 
 impl Term for Jitter {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         block.sense_late();
     }

@@ -30,6 +30,7 @@ pub fn delay(values: &Values) -> SimTime {
 struct Delay;
 
 impl Term for Delay {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         block.sense_late();
     }

@@ -297,11 +297,12 @@ fn allan_of_runs(rate: &str, keys: &str, m: usize, n: usize, runs: u64) -> (f64,
 fn flicker_has_a_flat_allan_deviation_of_0_664_b_at_any_rate() {
     let keys = "bias_instability = \"0.01 rad/s\"\nflicker = true\nflicker_band = { from = \"0.01 Hz\", to = \"100 Hz\" }";
     let floor = 2.0 * 2f64.ln() / PI * 1e-4;
-    for (rate, hz, taus) in [("100 Hz", 100, [2, 10, 50]), ("1 kHz", 1000, [1, 2, 5])] {
+    for (rate, hz, taus) in [("100 Hz", 100, [2, 10, 20]), ("1 kHz", 1000, [1, 2, 5])] {
         for tenths in taus {
             let m = tenths * hz / 10;
             let (found, error) = allan_of_runs(rate, keys, m, 16 * m, 120);
-            // Sums of processes ripple by a few per cent of the variance, and the band has ends.
+            // Sums of processes ripple by a few per cent of the variance, and the band has ends: by the closed form of
+            // the sum 2 to 6 % is missing up to 2 s, and 13 % at 5 s.
             let bound = 5.0 * error + 0.05 * floor;
             assert!(
                 (found - floor).abs() < bound,

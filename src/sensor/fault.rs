@@ -3,7 +3,7 @@
 //! A fault acts on the samples of [start, end). Those that withhold samples leave the others on their ticks. Random
 //! ones draw from the stream `fault/N/KIND`, N counting the sensor's faults from 0.
 
-use super::{Block, Context, SensorKind, Term};
+use super::{Block, Context, SensorKind, Term, aid};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Stream;
@@ -64,6 +64,7 @@ impl FaultKind {
         let key = |name, takes, default, about| Key { name, takes, default, about };
         let size =
             key("size", Takes::BodyVector(sensor.units().reading), None, "of what is added, or its bound");
+        let size = aid::turned(sensor, size);
         let share = Takes::Scalar(Kind::RATIO.signed(Sign::NonNegative));
         match self {
             FaultKind::Off | FaultKind::Stuck | FaultKind::Wrong => vec![],
@@ -151,6 +152,9 @@ impl Fault {
     }
 }
 
+/// Three components, and the velocity that comes with a receiver's.
+type Reading = [f64; 6];
+
 struct Faulty {
     kind: FaultKind,
     /// The ticks it acts on.
@@ -164,16 +168,17 @@ struct Faulty {
     every: u64,
     streams: [Stream; 3],
     /// The newest readings as they would be without it, the oldest first, and how many are kept.
-    past: VecDeque<[f64; 3]>,
+    past: VecDeque<Reading>,
     kept: usize,
     k: u64,
 }
 
 impl Term for Faulty {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for i in 0..block.len() {
             let k = self.k + i as u64;
-            let reading = [0, 1, 2].map(|axis| block.reading[axis][i]);
+            let reading = at(block, i);
             if self.kind == FaultKind::Delayed || (self.kind == FaultKind::Stuck && !self.is_stuck(k)) {
                 self.past.push_back(reading);
                 if self.past.len() > self.kept {
@@ -188,6 +193,9 @@ impl Term for Faulty {
                     for (column, value) in block.reading.iter_mut().zip(faulty) {
                         column[i] = value;
                     }
+                    for (column, value) in block.velocity.iter_mut().zip(&faulty[3..]) {
+                        column.get_mut(i).into_iter().for_each(|velocity| *velocity = *value);
+                    }
                 }
                 None => {
                     block.missing.resize(block.truth[0].len(), false);
@@ -199,6 +207,12 @@ impl Term for Faulty {
     }
 }
 
+fn at(block: &Block, i: usize) -> Reading {
+    let [x, y, z] = [0, 1, 2].map(|axis| block.reading[axis][i]);
+    let [vx, vy, vz] = [0, 1, 2].map(|axis| block.velocity[axis].get(i).copied().unwrap_or(0.0));
+    [x, y, z, vx, vy, vz]
+}
+
 impl Faulty {
     /// Whether the reading to be repeated is there already.
     fn is_stuck(&self, k: u64) -> bool {
@@ -206,16 +220,21 @@ impl Faulty {
     }
 
     /// What is read at tick k instead; nothing where there is no sample.
-    fn faulty(&mut self, k: u64, reading: [f64; 3]) -> Option<[f64; 3]> {
+    fn faulty(&mut self, k: u64, reading: Reading) -> Option<Reading> {
         let mut draw = |axis: usize| self.streams[axis].random::<f64>();
-        let plus = |times: f64| [0, 1, 2].map(|axis| reading[axis] + times * self.size[axis]);
+        let [x, y, z, velocity @ ..] = reading;
+        let with = |[x, y, z]: [f64; 3]| [x, y, z, velocity[0], velocity[1], velocity[2]];
+        let plus = |times: f64| {
+            let [a, b, c] = self.size.map(|size| times * size);
+            with([x + a, y + b, z + c])
+        };
         Some(match self.kind {
             FaultKind::Off => return None,
             FaultKind::Slow => return (k - self.ticks.start).is_multiple_of(self.every).then_some(reading),
             FaultKind::Intermittent => return (draw(0) >= self.share).then_some(reading),
             FaultKind::Stuck => *self.past.back()?,
             FaultKind::Delayed => *self.past.front()?,
-            FaultKind::Garbage => [0, 1, 2].map(|axis| self.size[axis] * (2.0 * draw(axis) - 1.0)),
+            FaultKind::Garbage => with([0, 1, 2].map(|axis| self.size[axis] * (2.0 * draw(axis) - 1.0))),
             FaultKind::Wrong => reading.map(|x| -x),
             FaultKind::Spike if draw(0) < self.share => plus(1.0),
             FaultKind::Spike => reading,

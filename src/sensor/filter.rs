@@ -103,6 +103,7 @@ impl Filter {
 }
 
 impl Term for Filter {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         if block.is_empty() {
             return;

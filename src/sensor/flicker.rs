@@ -5,12 +5,12 @@
 //! variance B²·ln r/π for a ratio r of neighbours (van der Ziel 1950; Keshner, *1/f noise*, Proc. IEEE 70(3), 1982:
 //! one process a decade is within some 5 %). Below the band the spectrum is flat, above it falls as 1/f².
 
+use super::wander::wander;
 use super::{Block, Context, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Nested, Takes, Values};
 use crate::quantity::{Kind, Sign};
-use crate::random::Stream;
+use crate::random::Normals;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::{PI, TAU};
 
 const HERTZ: Takes = Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive));
@@ -77,7 +77,7 @@ struct Process {
     bias: DVec3,
     decay: f64,
     step: DVec3,
-    streams: [Stream; 3],
+    normals: Normals,
 }
 
 struct Flicker(Vec<Process>);
@@ -92,32 +92,26 @@ impl Flicker {
             // In the middle of its share of the band.
             let tau = libm::pow(ratio, i as f64 + 0.5) / (TAU * to);
             let steps = context.rate.period() / tau;
-            let mut streams = context.streams(&format!("flicker/{i}"));
-            let start = DVec3::from_array(streams.each_mut().map(|stream| StandardNormal.sample(stream)));
+            let mut normals = context.normals(&format!("flicker/{i}"), sigma);
+            let start = DVec3::from_array(normals.draw());
             let step = sigma * libm::sqrt(-libm::expm1(-2.0 * steps));
-            Process { bias: sigma * start, decay: libm::exp(-steps), step, streams }
+            Process { bias: sigma * start, decay: libm::exp(-steps), step, normals }
         };
         Flicker((0..count).map(process).collect())
     }
 }
 
 impl Term for Flicker {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for process in &mut self.0 {
-            for axis in (0..3).filter(|&axis| process.step[axis] != 0.0) {
-                let (mut state, stream) = (process.bias[axis], &mut process.streams[axis]);
-                for bias in &mut block.bias[axis] {
-                    *bias += state;
-                    let n: f64 = StandardNormal.sample(stream);
-                    state = process.decay * state + process.step[axis] * n;
-                }
-                process.bias[axis] = state;
-            }
+            let (decay, step) = (process.decay, process.step.to_array());
+            let next = move |axis: usize, bias, n| decay * bias + step[axis] * n;
+            process.bias = wander(&mut process.normals, process.bias, &mut block.bias, next);
         }
     }
 
     fn normals(&self) -> usize {
-        let drawn = |process: &Process| process.step.to_array().iter().filter(|&&step| step != 0.0).count();
-        self.0.iter().map(drawn).sum()
+        self.0.iter().map(|process| process.normals.count()).sum()
     }
 }

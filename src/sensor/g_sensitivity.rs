@@ -29,6 +29,7 @@ pub(super) static KIND: TermKind = TermKind {
 struct GSensitivity(DMat3);
 
 impl Term for GSensitivity {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         linear::add_product(self.0, &block.force, &mut block.bias);
     }

@@ -29,6 +29,7 @@ pub(super) static KIND: TermKind = TermKind {
 struct HardIron(DVec3);
 
 impl Term for HardIron {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for (column, field) in block.reading.iter_mut().zip(self.0.to_array()) {
             column.iter_mut().for_each(|reading| *reading += field);

@@ -39,6 +39,7 @@ pub fn at_arm(arm: DVec3, rate: Vector<Body>, turning: Vector<Body>) -> Vector<B
 struct LeverArm;
 
 impl Term for LeverArm {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for (reading, arm) in block.reading.iter_mut().zip(&block.arm) {
             reading.iter_mut().zip(arm).for_each(|(reading, felt)| *reading += felt);

@@ -4,6 +4,7 @@ use super::block::Columns;
 use glam::DMat3;
 
 /// Every sample multiplied by the matrix.
+#[inline(always)]
 pub(super) fn transform(by: DMat3, columns: &mut Columns) {
     let [a, b, c] = by.transpose().to_cols_array_2d();
     let [x, y, z] = columns;
@@ -22,6 +23,7 @@ pub(super) fn transform(by: DMat3, columns: &mut Columns) {
 }
 
 /// The matrix times every sample of `from`, added to `to`.
+#[inline(always)]
 pub(super) fn add_product(by: DMat3, from: &Columns, to: &mut Columns) {
     let [x, y, z] = from;
     for (row, column) in by.transpose().to_cols_array_2d().into_iter().zip(to) {

@@ -59,6 +59,7 @@ pub fn matrix(values: &Values) -> DMat3 {
 struct Matrix(DMat3);
 
 impl Term for Matrix {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         linear::transform(self.0, &mut block.reading);
     }

@@ -68,6 +68,7 @@ impl Mount {
 
     /// Changes columns of body components on the chip's axes: `change` gets one column a chip axis, and −1.0 where the
     /// column is the chip's times that, which spares turning it over and back.
+    #[inline(always)]
     pub(super) fn on_chip(self, columns: &mut [Vec<f64>; 3], mut change: impl FnMut(&mut [f64], f64)) {
         if let Some(axes) = self.right_angles() {
             for (body, sign) in axes {
@@ -94,6 +95,7 @@ impl Mount {
 }
 
 /// Every sample of three columns multiplied by the matrix.
+#[inline(always)]
 fn turn(by: DMat3, columns: &mut [Vec<f64>; 3]) {
     let [x, y, z] = columns;
     for ((x, y), z) in x.iter_mut().zip(y).zip(z) {

@@ -47,6 +47,7 @@ struct Bend {
 }
 
 impl Term for Bend {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         // An odd function does not care which way a chip axis points along the body's.
         if self.mount.is_right_angled() {
@@ -63,6 +64,7 @@ impl Term for Bend {
     }
 }
 
+#[inline(always)]
 fn bend(column: &mut [f64], most: f64, range: f64) {
     let (inverse, cubic, linear) = (1.0 / range, 4.0 * most, -3.0 * most);
     for x in column {

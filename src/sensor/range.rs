@@ -45,6 +45,7 @@ struct Clip {
 }
 
 impl Term for Clip {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         let clipped = &mut block.clipped;
         self.mount.on_chip(&mut block.reading, |column, sign| {

@@ -77,6 +77,7 @@ struct Quantise {
 }
 
 impl Term for Quantise {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         let (lsb, per_unit) = (self.lsb, 1.0 / self.lsb);
         // Rounding treats both signs alike.
@@ -96,6 +97,7 @@ const SMALL: f64 = 2_251_799_813_685_248.0;
 
 /// The nearest whole number, halves away from zero, of a number below 2⁵¹: without a call or a branch, so that several
 /// samples are rounded at once.
+#[inline(always)]
 fn round_small(x: f64) -> f64 {
     /// 2⁵²: a sum with it has no digits behind the point.
     const NO_FRACTION: f64 = 4_503_599_627_370_496.0;

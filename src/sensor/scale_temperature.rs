@@ -29,6 +29,7 @@ pub(super) static KIND: TermKind = TermKind {
 struct PerKelvin(DVec3);
 
 impl Term for PerKelvin {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for (column, factor) in block.reading.iter_mut().zip(self.0.to_array()) {
             for (reading, temperature) in column.iter_mut().zip(&block.temperature) {

@@ -29,6 +29,7 @@ pub(super) static KIND: TermKind = TermKind {
 struct SoftIron(DMat3);
 
 impl Term for SoftIron {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         linear::transform(self.0, &mut block.reading);
     }

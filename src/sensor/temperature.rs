@@ -93,6 +93,7 @@ impl Warming {
 }
 
 impl Term for Warming {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         let n = block.len();
         if self.rise == 0.0 {

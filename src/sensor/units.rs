@@ -17,8 +17,8 @@ pub struct Units {
     pub bias_walk: Kind,
     /// The size of a count, counts a unit, or bits.
     pub resolution: Kind,
-    /// A bias per kelvin.
-    pub per_kelvin: Kind,
+    /// A bias per kelvin, where there is such a thing.
+    pub per_kelvin: Option<Kind>,
 }
 
 pub(super) static GYRO_UNITS: Units = Units {
@@ -28,7 +28,7 @@ pub(super) static GYRO_UNITS: Units = Units {
     random_walk: Some(("angle_random_walk", Kind::ANGLE_RANDOM_WALK)),
     bias_walk: Kind::GYRO_WALK,
     resolution: Kind::GYRO_RESOLUTION,
-    per_kelvin: Kind::GYRO_PER_KELVIN,
+    per_kelvin: Some(Kind::GYRO_PER_KELVIN),
 };
 pub(super) static ACCEL_UNITS: Units = Units {
     reading: Kind::ACCELERATION,
@@ -37,7 +37,7 @@ pub(super) static ACCEL_UNITS: Units = Units {
     random_walk: Some(("velocity_random_walk", Kind::VELOCITY_RANDOM_WALK)),
     bias_walk: Kind::ACCEL_WALK,
     resolution: Kind::ACCEL_RESOLUTION,
-    per_kelvin: Kind::ACCEL_PER_KELVIN,
+    per_kelvin: Some(Kind::ACCEL_PER_KELVIN),
 };
 pub(super) static MAG_UNITS: Units = Units {
     reading: Kind::FIELD,
@@ -46,5 +46,24 @@ pub(super) static MAG_UNITS: Units = Units {
     random_walk: None,
     bias_walk: Kind::MAG_WALK,
     resolution: Kind::MAG_RESOLUTION,
-    per_kelvin: Kind::MAG_PER_KELVIN,
+    per_kelvin: Some(Kind::MAG_PER_KELVIN),
+};
+pub(super) static BARO_UNITS: Units = Units {
+    reading: Kind::PRESSURE,
+    variance: Kind::BARO_VARIANCE,
+    density: Kind::BARO_DENSITY,
+    random_walk: None,
+    bias_walk: Kind::BARO_WALK,
+    resolution: Kind::BARO_RESOLUTION,
+    per_kelvin: Some(Kind::BARO_PER_KELVIN),
+};
+/// Of the position.
+pub(super) static GPS_UNITS: Units = Units {
+    reading: Kind::LENGTH,
+    variance: Kind::POSITION_VARIANCE,
+    density: Kind::POSITION_DENSITY,
+    random_walk: None,
+    bias_walk: Kind::POSITION_WALK,
+    resolution: Kind::POSITION_RESOLUTION,
+    per_kelvin: None,
 };

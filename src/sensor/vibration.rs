@@ -73,7 +73,7 @@ pub(super) static KIND: TermKind = TermKind {
         let keys = match sensor {
             SensorKind::Gyro => &GYRO,
             SensorKind::Accel => &ACCEL,
-            SensorKind::Mag => return vec![],
+            _ => return vec![],
         };
         vec![Key {
             name: "vibration",
@@ -239,6 +239,7 @@ struct Vibration {
 }
 
 impl Term for Vibration {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
         for stride in strides(self.k, block.len()) {
             let t = (self.phase + self.clock.tick(stride.anchor)).seconds();

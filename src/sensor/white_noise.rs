@@ -8,10 +8,9 @@
 use super::{Block, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign};
-use crate::random::Stream;
+use crate::random::Normals;
 use crate::time::Rate;
 use glam::DVec3;
-use rand_distr::{Distribution, StandardNormal};
 
 pub(super) static KIND: TermKind = TermKind {
     name: "white_noise",
@@ -37,7 +36,7 @@ pub(super) static KIND: TermKind = TermKind {
     build: |values, context| {
         let sigma = sigma(values, context.sensor, context.rate)?;
         Ok((sigma != DVec3::ZERO).then(|| {
-            Box::new(WhiteNoise { sigma, streams: context.streams("white_noise") }) as Box<dyn Term>
+            Box::new(WhiteNoise { sigma, normals: context.normals("white_noise", sigma) }) as Box<dyn Term>
         }))
     },
 };
@@ -86,21 +85,17 @@ fn per_sample(key: &str, given: DVec3, rate: Rate) -> DVec3 {
 
 struct WhiteNoise {
     sigma: DVec3,
-    streams: [Stream; 3],
+    normals: Normals,
 }
 
 impl Term for WhiteNoise {
+    #[inline(always)]
     fn apply(&mut self, block: &mut Block) {
-        for axis in (0..3).filter(|&axis| self.sigma[axis] != 0.0) {
-            let (sigma, stream) = (self.sigma[axis], &mut self.streams[axis]);
-            for reading in &mut block.reading[axis] {
-                let n: f64 = StandardNormal.sample(stream);
-                *reading += sigma * n;
-            }
-        }
+        let (sigma, readings) = (self.sigma.to_array(), block.reading.each_mut().map(Vec::as_mut_slice));
+        self.normals.zip(readings, |axis, reading, normal| *reading += sigma[axis] * normal);
     }
 
     fn normals(&self) -> usize {
-        self.sigma.to_array().iter().filter(|&&sigma| sigma != 0.0).count()
+        self.normals.count()
     }
 }

@@ -116,7 +116,12 @@ impl Heard {
         let truth = |t: SimTime| self.plan.trajectory.at(t.max(SimTime::ZERO)).attitude;
         let Judging { align, settle: from } = judging;
         let options = score::Options { align, from, until: played, ..score::Options::default() };
-        let mut figures = score::judge(&truth, said, &options).map(|judged| judged.figures);
+        // Where nothing moves that tells one clock from the other, an estimate holds when it arrives.
+        let arrived =
+            || said.iter().map(|it| Timed { stamp: score::Stamp::Arrival, ..*it }).collect::<Vec<_>>();
+        let judged = score::judge(&truth, said, &options);
+        let mut figures =
+            judged.or_else(|| score::judge(&truth, &arrived(), &options)).map(|judged| judged.figures);
         let (late, ahead) = figures.as_ref().map_or((0, None), |figures| {
             let ns = |value: Option<f64>, unit: f64| value.map(|value| (value * unit) as i64);
             (ns(figures.delay_ms, 1e6).unwrap_or_default(), ns(figures.clock_offset_s, 1e9))

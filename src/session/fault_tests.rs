@@ -23,11 +23,16 @@ fn fault(kind: &str, more: &str) -> String {
     format!("[[fault]]\nkind = \"{kind}\"\nstart = \"200 ms\"\nduration = \"500 ms\"\n{more}\n")
 }
 
+/// Bytes, each with when they had arrived.
+type Arrivals = Vec<(i64, Vec<u8>)>;
+
 /// A virtual clock that notes what has arrived whenever it moves on.
 struct Noting {
     now: i64,
     far: Far,
-    seen: Arc<Mutex<Vec<(i64, Vec<u8>)>>>,
+    seen: Arc<Mutex<Arrivals>>,
+    /// When everything is told to stop.
+    stop: Option<(i64, Arc<Shared>)>,
 }
 
 impl Clock for Noting {
@@ -41,6 +46,9 @@ impl Clock for Noting {
             self.seen.lock().unwrap().push((self.now, bytes));
         }
         self.now = self.now.max(t);
+        if let Some((_, shared)) = self.stop.as_ref().filter(|(stop, _)| self.now >= *stop) {
+            shared.stop.store(true, Ordering::Relaxed);
+        }
     }
 }
 
@@ -49,7 +57,7 @@ struct Ran {
     made: Made,
     sent: u64,
     /// What came, and when.
-    seen: Vec<(i64, Vec<u8>)>,
+    seen: Arrivals,
 }
 
 impl Ran {
@@ -77,7 +85,7 @@ fn run(scene: &str, speed: Speed) -> Ran {
     made.faults.iter_mut().flatten().for_each(|acts| acts.settle(plan.duration));
     let (sender, far) = memory(1 << 20);
     let seen = Arc::default();
-    let clock = Noting { now: 0, far, seen: Arc::clone(&seen) };
+    let clock = Noting { now: 0, far, seen: Arc::clone(&seen), stop: None };
     let mut pacer = Pacer::new(clock, consumer, vec![sender], [Overload::DropNewest], speed);
     pacer.run(0, &shared);
     accounts_balance(&made, &mut pacer);
@@ -105,7 +113,7 @@ fn a_receiver_counts_exactly_what_was_injected() {
         let clean = play(name, "");
         let (none, all) = clean.received(protocol);
         assert_eq!((none.lost, none.damaged, none.duplicates, none.out_of_order), (0, 0, 0, 0), "control");
-        assert_eq!((all, clean.made.samples[0]), ([1000, 1000, 100], [1000, 1000, 100]));
+        assert_eq!((all, &clean.made.samples[0][..3]), ([1000, 1000, 100], &[1000, 1000, 100][..]));
         // In 500 ms: mpu has imu and mag packets, mavlink one for both.
         let n = if name == "mpu" { 550.0 } else { 500.0 };
         for (kind, p) in [("drop", 0.2), ("corrupt", 0.2), ("duplicate", 0.2), ("reorder", 0.2 / 1.2)] {
@@ -221,7 +229,29 @@ fn what_was_done_ahead_of_time_is_not_told() {
         (110, vec!["mpu@pty drop from 0.2 s to 0.7 s".into()])
     );
     made.faults[0][0].settle(plan.duration);
-    assert_eq!((made.faults[0][0].packets, made.samples[0]), (550, [500, 500, 50]));
+    assert_eq!((made.faults[0][0].packets, &made.samples[0][..3]), (550, &[500, 500, 50][..]));
+}
+
+#[test]
+fn the_account_is_whole_wherever_a_run_with_faults_is_stopped() {
+    let kinds = ["drop", "corrupt", "duplicate", "reorder"];
+    let every = kinds.map(|kind| fault(kind, "share = \"30 %\"")).concat();
+    let plan = plan(&scene("mavlink", &(every + &fault("stall", "") + &fault("split", ""))));
+    for stop in [0, 150, 205, 400, 699, 701, 950].map(|ms| ms * MS) {
+        let shared = Arc::new(Shared::default());
+        let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+        let made = produce(&plan, &plan.outputs, ring, &shared);
+        let (sender, far) = memory(1 << 20);
+        let clock = Noting { now: 0, far, seen: Arc::default(), stop: Some((stop, shared.clone())) };
+        let mut pacer = Pacer::new(clock, consumer, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
+        pacer.run(0, &shared);
+        let played = shared.stream_ns.load(Ordering::Relaxed);
+        assert!(
+            (stop..stop + 60 * MS).contains(&played),
+            "time goes on where nothing is sent: {played} of {stop}"
+        );
+        accounts_balance(&made, &mut pacer);
+    }
 }
 
 #[test]

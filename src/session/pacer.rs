@@ -3,7 +3,7 @@
 
 use super::lockstep::Step;
 use super::overload::{Due, Queue, RETRY};
-use super::replies::Replies;
+use super::replies::{Replied, Replies};
 use super::tally::{Effort, LinkTally, SensorTally};
 use super::watch::Watching;
 use super::{Item, Shared};
@@ -164,13 +164,21 @@ impl<C: Clock> Pacer<C> {
                 self.clock.sleep_until(now + look_up / 2);
                 continue;
             }
-            if replied && due > now + SPARE {
+            if replied != Replied::Nothing && due > now + SPARE {
+                // Right behind a packet a link is full: later it may take the reply, too.
+                if replied == Replied::Full {
+                    self.clock.sleep_until(now + RETRY);
+                }
                 continue;
             }
             // The packet leaves the ring before the wait, so that nothing stands between the wait and the write.
             let Ok(Item { output, packet }) = self.ring.pop() else { continue };
             if due != i64::MIN {
                 self.clock.wait_until(due);
+            }
+            if replied == Replied::Full {
+                // Whoever waits for an answer waits longer than one who misses a sample.
+                self.reply(shared);
             }
             if packet.is_nothing() {
                 self.senders[output].send_kept(packet.piece.into());

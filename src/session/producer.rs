@@ -6,7 +6,7 @@ use crate::player::{BLOCK, Moment, Player};
 use crate::scene::{Output, Plan};
 use crate::sensor::ByKind;
 use crate::time::SimTime;
-use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Setup, dialogue::Peer};
+use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Protocol, Setup, dialogue::Peer};
 use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -67,6 +67,7 @@ pub(super) fn produce(task: Task<'_>, ring: Producer<Item>, shared: &Shared) -> 
         .enumerate()
         .map(|(i, output)| Faults::new(&output.faults, output.to.protocol, plan.seed, i));
     let mut maker = Maker {
+        protocols: outputs.iter().map(|output| output.to.protocol).collect(),
         samples: vec![ByKind::default(); outputs.len()],
         encoders,
         faults: faults.collect(),
@@ -95,6 +96,8 @@ pub(super) fn produce(task: Task<'_>, ring: Producer<Item>, shared: &Shared) -> 
 }
 
 struct Maker<'a> {
+    /// Of each output; one that has no place for a sensor makes no samples of it.
+    protocols: Vec<Protocol>,
     encoders: Encoders,
     faults: Vec<Option<Faults>>,
     samples: Vec<ByKind<u64>>,
@@ -166,7 +169,7 @@ impl Maker<'_> {
         let truth = &Truth { t, ..*truth };
         self.items.clear();
         for output in 0..self.encoders.len() {
-            for reading in readings {
+            for reading in readings.iter().filter(|reading| self.protocols[output].carries(reading.kind)) {
                 self.samples[output][reading.kind as usize] += 1;
             }
             self.packets.clear();

@@ -63,6 +63,17 @@ impl Way {
     }
 }
 
+/// What came of a look at the replies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Replied {
+    /// There was none.
+    Nothing,
+    /// One was written; there may be others.
+    Some,
+    /// One waits for its link.
+    Full,
+}
+
 /// The pacing thread's end of a way.
 pub(super) struct Replies {
     ring: Consumer<Packet>,
@@ -71,9 +82,9 @@ pub(super) struct Replies {
 }
 
 impl<C: Clock> Pacer<C> {
-    /// Writes the next reply to each link; whether there was any.
-    pub(super) fn reply(&mut self, shared: &Shared) -> bool {
-        let mut replied = false;
+    /// Writes the next reply to each link; what came of it.
+    pub(super) fn reply(&mut self, shared: &Shared) -> Replied {
+        let mut replied = Replied::Nothing;
         for output in 0..self.replies.len() {
             let Some(replies) = &mut self.replies[output] else { continue };
             let Some(packet) = replies.unsent.take().or_else(|| replies.ring.pop().ok()) else { continue };
@@ -87,12 +98,17 @@ impl<C: Clock> Pacer<C> {
                 Speed::Times(_) => sender.send(packet.bytes()),
             };
             match sent {
-                Sent::Done => self.tallies[output].replies += 1,
-                Sent::Full => replies.unsent = Some(packet),
+                Sent::Done => {
+                    self.tallies[output].replies += 1;
+                    replied = replied.max(Replied::Some);
+                }
+                Sent::Full => {
+                    replies.unsent = Some(packet);
+                    replied = Replied::Full;
+                }
                 Sent::Away => {}
                 Sent::Gone(kind) => self.gone[output] = Some(kind),
             }
-            replied |= sent == Sent::Done;
         }
         replied
     }

@@ -57,7 +57,7 @@ pub fn run(plan: &Plan, effort: Effort) -> Vec<Point> {
     }
     let mut points = Vec::new();
     for (sensor, octaves) in plan.sensors.iter().zip(&watched) {
-        for (axis, octaves) in octaves.iter().enumerate() {
+        for (axis, octaves) in octaves.iter().enumerate().take(sensor.kind.axes().len()) {
             points.extend(octaves.points(plan, sensor, axis));
         }
     }
@@ -110,7 +110,7 @@ impl Octaves {
             let tau_s = libm::exp2(level as f64) * sensor.rate.period();
             Point {
                 sensor: sensor.kind.name(),
-                axis: ["x", "y", "z"][axis],
+                axis: sensor.kind.axes()[axis],
                 tau_s,
                 deviation: libm::sqrt(0.5 * octave.squares / octave.differences as f64),
                 theory: libm::sqrt(variance(plan, sensor, axis, tau_s)),

@@ -4,12 +4,16 @@
 //! emulator with this noise could do with less. Scene and floor take turns in short rounds, and each counts with its
 //! quickest round, because whatever else runs on the machine only ever adds.
 
+mod cores;
+
+pub use cores::Cores;
+
+use crate::os;
 use crate::player::{BLOCK, Player};
-use crate::random::{self, Stream};
+use crate::random::{self, Normals};
 use crate::scene::Plan;
 use crate::sensor::TERMS;
 use crate::time::SimTime;
-use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 use std::hint::black_box;
 use std::time::Duration;
@@ -31,6 +35,8 @@ pub struct Cost {
     pub normals_per_sample: f64,
     /// The truth, then each error term in the order of the chain.
     pub terms: Vec<TermCost>,
+    /// All processors together; none where there is but one.
+    pub cores: Option<Cores>,
 }
 
 /// What a sample costs with the terms up to one.
@@ -95,6 +101,7 @@ pub fn run(plan: &Plan, effort: Effort, now: &dyn Fn() -> Duration) -> Cost {
         ratio: floor_ns.map(|ns| scene / ns),
         normals_per_sample: floor.normals as f64 / samples,
         terms,
+        cores: cores::run(plan, end, samples, effort.rounds, now),
     }
 }
 
@@ -112,9 +119,9 @@ fn nine_axis(plan: &Plan, end: SimTime) -> f64 {
 
 /// The normal numbers of a scene and nothing else.
 struct Floor {
-    /// Of each sensor: its streams, one for each normal number a sample, and its samples.
-    streams: Vec<(Vec<Stream>, u64)>,
-    column: Vec<f64>,
+    /// Of each sensor: its streams, as many axes as it draws normal numbers a sample, and its samples.
+    streams: Vec<(Vec<Normals>, u64)>,
+    columns: [Vec<f64>; 3],
     normals: u64,
 }
 
@@ -123,33 +130,41 @@ impl Floor {
         let streams = plan.sensors.iter().map(|sensor| {
             let samples = sensor.rate.ticks_before(sensor.phase, end);
             let count = plan.build(sensor).normals();
-            let streams = (0..count).map(|i| random::stream(plan.seed, &format!("{}/{i}", sensor.kind)));
-            (streams.collect::<Vec<_>>(), samples)
+            let three = |i| {
+                let wanted = [i, i + 1, i + 2].map(|i| i < count);
+                random::normals(plan.seed, &format!("{}/{i}", sensor.kind), wanted)
+            };
+            ((0..count).step_by(3).map(three).collect::<Vec<_>>(), samples)
         });
         let streams: Vec<_> = streams.collect();
-        let normals = streams.iter().map(|(streams, samples)| streams.len() as u64 * samples).sum();
-        Floor { streams, column: vec![0.0; BLOCK], normals }
+        let drawn = |(streams, samples): &(Vec<Normals>, u64)| {
+            streams.iter().map(Normals::count).sum::<usize>() as u64 * samples
+        };
+        let normals = streams.iter().map(drawn).sum();
+        Floor { streams, columns: [(); 3].map(|()| vec![0.0; BLOCK]), normals }
     }
 
     fn draw(&mut self) {
         for (streams, samples) in &mut self.streams {
             for first in (0..*samples).step_by(BLOCK) {
                 let count = (BLOCK as u64).min(*samples - first) as usize;
-                for stream in &mut *streams {
-                    for value in &mut self.column[..count] {
-                        let normal: f64 = StandardNormal.sample(stream);
-                        *value += normal;
-                    }
+                for normals in &mut *streams {
+                    let columns = self.columns.each_mut().map(|column| &mut column[..count]);
+                    os::widest(
+                        #[inline(always)]
+                        || normals.zip(columns, |_, value, normal| *value += normal),
+                    );
                 }
             }
         }
-        black_box(&self.column);
+        black_box(&self.columns);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parallel;
     use std::cell::Cell;
 
     #[test]
@@ -171,6 +186,11 @@ mod tests {
         let ns = 1e6 / nine_axis(&plan, end(&plan, 500));
         assert!(cost.terms.iter().all(|term| (term.ns_per_sample - ns).abs() < 1e-9 * ns), "{cost:?}");
         assert!((cost.nine_axis_samples_per_s * ns * 1e-9 - 1.0).abs() < 1e-9);
+        if let Some(cores) = cost.cores {
+            assert_eq!((cores.threads, cores.times_one), (parallel::all_cores(), 1.0));
+            let runs = cores.nine_axis_samples_per_s / cost.nine_axis_samples_per_s;
+            assert!((runs - (cores.threads * cores::RUNS_EACH) as f64).abs() < 1e-6, "{runs}");
+        }
     }
 
     #[test]

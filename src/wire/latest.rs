@@ -5,12 +5,13 @@
 //! without a new one is told again as it was, as a unit that holds its output registers does.
 
 use super::{Newest, Packet, Setup};
+use crate::earth::SEA_LEVEL_PRESSURE;
 use crate::schedule::Ticks;
 use crate::sensor::{ByKind, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
 
-/// Gyro, accel and mag.
-const CARRIED: u8 = 0b111;
+/// Gyro, accel, mag and baro.
+const CARRIED: u8 = 0b1111;
 
 pub(super) struct Latest {
     newest: Newest,
@@ -59,6 +60,11 @@ impl Latest {
         }
     }
 
+    /// The newest reading of each sensor.
+    pub(super) fn newest(&self) -> &ByKind<Option<Reading>> {
+        &self.newest.values
+    }
+
     /// Samples of each kind taken in that no packet has carried yet.
     pub(super) fn waiting(&self) -> ByKind<u64> {
         self.newest.waiting()
@@ -72,6 +78,11 @@ impl Latest {
     fn has_begun(&self) -> bool {
         self.carrier.is_some_and(|kind| self.newest.values[kind as usize].is_some())
     }
+}
+
+/// The barometer's newest reading, or the standard atmosphere's at sea level where the scene has none, Pa.
+pub(super) fn pascals(newest: &ByKind<Option<Reading>>) -> f64 {
+    newest[SensorKind::Baro as usize].map_or(SEA_LEVEL_PRESSURE, |reading| reading.value.v.x)
 }
 
 /// A reading's axes in so many of a unit, 0 where there is none.

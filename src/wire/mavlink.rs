@@ -2,13 +2,15 @@
 //!
 //! It speaks as a component of the system that the conversation has found, or of system 1.
 //! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
-//! before; the temperature of the first sensor that has one in the scene. Axes are Forward-Right-Down; the field is in gauss, which is 100 µT.
+//! before; the temperature of the first sensor that has one in the scene, else the barometer's. Axes are
+//! Forward-Right-Down; the field is in gauss, which is 100 µT, pressure in hPa.
 
 mod extra;
 
 pub use extra::{Extra, Extras};
 
-use super::{Encoder, EverySecond, Newest, Now, Packet, Setup};
+use super::{Encoder, EverySecond, Newest, Now, Packet, Protocol, Setup};
+use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, SensorKind};
 use crate::time::SimTime;
 use extra::Sender;
@@ -28,8 +30,11 @@ const ACTIVE: u8 = 4;
 const DIALECT_VERSION: u8 = 3;
 
 pub(super) const MICROTESLA_A_GAUSS: f64 = 100.0;
-/// The bits of `fields_updated` of gyro, accel and mag.
-pub(super) const MASKS: [u32; 3] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG];
+pub(super) const PASCALS_A_HECTOPASCAL: f64 = 100.0;
+/// The bits of `fields_updated` of gyro, accel, mag and baro.
+const MASKS: [u32; 4] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG, hil_sensor::PRESSURE];
+/// The kinds of sensor of which HIL_SENSOR has fields.
+const KINDS: u8 = 0b1111;
 
 pub(super) struct Mavlink {
     version: Version,
@@ -57,7 +62,11 @@ impl Mavlink {
             extras: setup.options.extras.iter().map(Sender::new).collect(),
             counts: super::mpu::counts(setup.sensors),
             newest: Newest::default(),
-            carrier: setup.sensors.first().map(|sensor| sensor.kind),
+            carrier: setup
+                .sensors
+                .iter()
+                .map(|sensor| sensor.kind)
+                .find(|kind| Protocol::Mavlink.carries(*kind)),
             unix_us_at_start: setup.day.map(|day| day.unix_seconds() as u64 * 1_000_000),
             warm: setup
                 .sensors
@@ -104,18 +113,20 @@ impl Mavlink {
     fn hil_sensor(&self, t: SimTime) -> Message {
         let readings = self.readings();
         let value = |kind, unit| readings.over(kind, unit).map(|x| x as f32);
-        let fresh = (0..3).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
+        let fresh = (0..MASKS.len()).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
         let temperature = readings.temperature();
         let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
+        let baro = self.newest.values[SensorKind::Baro as usize];
+        let pressure = baro.map(|reading| reading.value.v.x);
         Message::HilSensor(hil_sensor::Repr {
             time_usec: t.0 as u64 / 1000,
             accel: value(SensorKind::Accel, 1.0),
             gyro: value(SensorKind::Gyro, 1.0),
             mag: value(SensorKind::Mag, MICROTESLA_A_GAUSS),
-            abs_pressure: 0.0,
+            abs_pressure: pressure.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
             diff_pressure: 0.0,
-            pressure_alt: 0.0,
-            temperature: temperature.unwrap_or(0.0) as f32,
+            pressure_alt: pressure.map_or(0.0, |pascals| pressure_altitude(pascals) as f32),
+            temperature: temperature.or(baro.map(|reading| reading.temperature)).unwrap_or(0.0) as f32,
             fields_updated: fresh.fold(0, |mask, bits| mask | bits),
             id: 0,
         })
@@ -166,7 +177,7 @@ impl Encoder for Mavlink {
             let message = self.hil_sensor(t);
             let mut buffer = [0; mavlink::MAX_LEN];
             let bytes = self.bytes(&message, &mut buffer);
-            out.push(self.newest.packet(t, 0b111, bytes));
+            out.push(self.newest.packet(t, KINDS, bytes));
         }
         self.extras(now, out);
     }
@@ -175,3 +186,6 @@ impl Encoder for Mavlink {
         self.newest.waiting()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,20 +1,17 @@
 //! `mip`: inertial packets of a MicroStrain unit, at each gyro tick.
 //!
-//! A packet has a field for each sensor that the scene has, and always the pressure, that of the standard atmosphere
-//! at sea level. Axes are forward, right, down; the field is in gauss, specific force in g. The stream ends with a
+//! A packet has a field for each sensor that the scene has, and always the pressure: the barometer's, or without one that of the
+//! standard atmosphere at sea level. Axes are forward, right, down; the field is in gauss, specific force in g. The stream ends with a
 //! vehicle that has stopped.
 
-use super::latest::{Latest, in_units};
-use super::mavlink::MICROTESLA_A_GAUSS;
+use super::latest::{Latest, in_units, pascals};
+use super::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
 use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::earth::STANDARD_GRAVITY;
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Reading, SensorKind};
 use crate::time::SimTime;
 use ratetable_protocols::mip::{self, imu};
-
-/// The standard atmosphere at sea level, mbar.
-const SEA_LEVEL: f32 = 1013.25;
 
 pub(super) struct Mip {
     latest: Latest,
@@ -38,7 +35,7 @@ impl Encoder for Mip {
 
     fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
         let Some(truth) = &self.last else { return };
-        let mut still: ByKind<Option<Reading>> = ByKind::default();
+        let mut still = *self.latest.newest();
         for (kind, value) in
             [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
         {
@@ -62,7 +59,8 @@ fn write(newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
         reading.map(|reading| in_units(Some(reading), unit))
     };
     let imu = imu::Repr {
-        pressure: Some(SEA_LEVEL),
+        // A millibar is a hectopascal.
+        pressure: Some((pascals(newest) / PASCALS_A_HECTOPASCAL) as f32),
         mag: field(SensorKind::Mag, MICROTESLA_A_GAUSS),
         accel: field(SensorKind::Accel, STANDARD_GRAVITY),
         gyro: field(SensorKind::Gyro, 1.0),

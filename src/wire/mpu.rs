@@ -31,23 +31,22 @@ pub(super) struct Mpu {
 impl Mpu {
     pub(super) fn new(setup: &Setup<'_>) -> Mpu {
         let plan = |kind| setup.sensors.iter().find(|sensor| sensor.kind == kind);
-        let [gyro, accel, mag] = SensorKind::ALL.map(plan);
+        let [gyro, accel, mag] = SensorKind::TRIADS.map(plan);
         let is_60x0 = [gyro, accel].into_iter().flatten().any(|sensor| sensor.part == Some("MPU-6050"));
         let chip = if is_60x0 { Chip::Mpu60x0 } else { Chip::Mpu9250 };
         let (gyro_config, gyro_count) = gyro_scale(gyro);
         let (accel_config, accel_count) = accel_scale(accel);
         let mount =
             |sensor: Option<&SensorPlan>| sensor.and_then(|sensor| sensor.mount).unwrap_or_else(Mount::flu);
-        let fastest =
-            [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+        let (config, smplrt_div) = sampling(chip, gyro, accel);
         Mpu {
             seq: 0,
             seconds: EverySecond::default(),
             newest: Newest::default(),
             config: config::Repr {
                 who_am_i: chip.who_am_i(),
-                smplrt_div: divider(fastest),
-                config: u8::from(fastest <= 1000.0),
+                smplrt_div,
+                config,
                 gyro_config,
                 accel_config,
                 mag_who: if mag.is_some() { registers::WHO_AK8963 } else { 0 },
@@ -86,7 +85,7 @@ impl Mpu {
 
     /// Of the die, °C: the gyro's where there is one.
     fn temperature(&self) -> f64 {
-        let [gyro, accel, _] = &self.newest.values;
+        let [gyro, accel, ..] = &self.newest.values;
         gyro.as_ref().or(accel.as_ref()).map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature)
     }
 
@@ -98,8 +97,10 @@ impl Mpu {
         })
     }
 
-    fn alone(&self, kind: SensorKind) -> mpu::Packet {
-        match kind {
+    /// The newest reading by itself; nothing of a sensor that no chip of these has.
+    fn alone(&self, kind: SensorKind) -> Option<mpu::Packet> {
+        Some(match kind {
+            SensorKind::Baro | SensorKind::Gps => return None,
             SensorKind::Gyro => mpu::Packet::Gyro(gyro::Repr { gyro: self.counts(kind) }),
             SensorKind::Accel => mpu::Packet::Accel(accel::Repr { accel: self.counts(kind) }),
             SensorKind::Mag => {
@@ -118,7 +119,7 @@ impl Mpu {
                     st2: registers::ST2_16_BIT | overflow,
                 })
             }
-        }
+        })
     }
 }
 
@@ -134,8 +135,9 @@ impl Encoder for Mpu {
             self.push(t, IMU, &self.imu(), out);
         }
         for kind in readings.iter().map(|reading| reading.kind) {
-            if self.burst.is_none() || kind == SensorKind::Mag {
-                self.push(t, 1 << kind as u8, &self.alone(kind), out);
+            let alone = self.alone(kind).filter(|_| self.burst.is_none() || kind == SensorKind::Mag);
+            if let Some(packet) = alone {
+                self.push(t, 1 << kind as u8, &packet, out);
             }
         }
     }
@@ -184,7 +186,21 @@ fn burst(setup: &Setup<'_>, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan
     together.then_some(faster)
 }
 
-/// SMPLRT_DIV of the rate: 1 kHz / (1 + divider); the 8 kHz of the unfiltered gyro has none.
-fn divider(hz: f64) -> u8 {
-    if hz <= 0.0 || hz > 1000.0 { 0 } else { (libm::round(1000.0 / hz) - 1.0).clamp(0.0, 255.0) as u8 }
+/// CONFIG and SMPLRT_DIV of the rate of the faster sensor and of the gyro's low-pass filter, or without a gyro the
+/// accelerometer's: the nearest bandwidth that goes with the rate. Without a filter DLPF_CFG is 1 up to 1 kHz, 0 above.
+fn sampling(chip: Chip, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -> (u8, u8) {
+    let hz = [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
+    let divider = |undivided: f64| (libm::round(undivided / hz) - 1.0).clamp(0.0, 255.0) as u8;
+    // Half a per cent, as the clocks of these parts do not keep.
+    if hz > 1005.0 {
+        return (0, if chip == Chip::Mpu60x0 { divider(8000.0) } else { 0 });
+    }
+    let filter = gyro.or(accel).and_then(|sensor| sensor.values.table("filter")?.scalar("low_pass"));
+    let Some(cut_off) = filter else { return (1, divider(1000.0)) };
+    let bandwidths = chip.gyro_bandwidths_hz();
+    // 8 kHz are divided by an MPU-6050 alone, and by 256 at most.
+    let widest = if chip == Chip::Mpu60x0 && hz >= 8000.0 / 256.0 { 0 } else { 1 };
+    let off = |config: &u8| libm::log(bandwidths[usize::from(*config)] / cut_off).abs();
+    let config = (widest..=6).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(1);
+    (config, divider(if config == 0 { 8000.0 } else { 1000.0 }))
 }

@@ -4,7 +4,7 @@
 //! horizontal part turned to true north: INAV takes the declination as 0. INAV keeps what came last for ever, so the
 //! stream ends with a vehicle that has stopped.
 
-use super::latest::Latest;
+use super::latest::{Latest, pascals};
 use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
 use crate::geometry::{Body, Nav, Vector};
@@ -59,7 +59,12 @@ impl Encoder for Msp {
         self.latest.encode(now.t, &self.turned, out, &mut buffer, |_, newest, buffer| {
             let value =
                 |kind: SensorKind| newest[kind as usize].map_or(Vector::ZERO, |reading| reading.value);
-            frame([SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value), strength, buffer)
+            frame(
+                [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value),
+                strength,
+                pascals(newest),
+                buffer,
+            )
         });
     }
 
@@ -68,7 +73,7 @@ impl Encoder for Msp {
         let [gyro, accel, field] = stopped(truth);
         let mag = if self.has_mag { field + to_true_north(truth) } else { Vector::ZERO };
         let mut buffer = [0; msp::MAX_LEN];
-        let len = frame([gyro, accel, mag], truth.field.length(), &mut buffer);
+        let len = frame([gyro, accel, mag], truth.field.length(), pascals(self.latest.newest()), &mut buffer);
         out.push(Packet::new(t, 0, &buffer[..len]));
     }
 
@@ -88,15 +93,15 @@ fn to_true_north(truth: &Truth) -> Vector<Body> {
     truth.attitude.inverse().apply(turned - field)
 }
 
-/// The frame of gyro, accel and mag; `strength` is the place's field in µT.
-fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, buffer: &mut [u8]) -> usize {
+/// The frame of gyro, accel and mag; `strength` is the place's field in µT, `pressure` in Pa.
+fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64, buffer: &mut [u8]) -> usize {
     let field = if strength > 0.0 { FIELD / strength } else { 0.0 };
     let message = Message::Simulator(simulator::Repr {
         version: simulator::VERSION,
         flags: FLAGS,
         accel: counts(accel, ACCEL_SCALE / STANDARD_GRAVITY),
         gyro: counts(gyro, GYRO_SCALE * 1f64.to_degrees()),
-        pressure: simulator::SEA_LEVEL,
+        pressure: libm::round(pressure) as i32,
         mag: counts(mag, field),
         ..simulator::Repr::default()
     });

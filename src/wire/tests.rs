@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::earth::STANDARD_GRAVITY;
-use crate::player::{Moment, Player};
+use crate::player::Player;
 use crate::scene::Plan;
 use crate::sensor::Mount;
 use crate::time::Rate;
@@ -72,8 +72,8 @@ fn counts_match(counts: [i16; 3], reading: &Reading, count: f64) {
     }
 }
 
-const GYRO_COUNT: f64 = std::f64::consts::PI / 180.0 / 16.4;
-const ACCEL_COUNT: f64 = STANDARD_GRAVITY / 2048.0;
+pub(super) const GYRO_COUNT: f64 = std::f64::consts::PI / 180.0 / 16.4;
+pub(super) const ACCEL_COUNT: f64 = STANDARD_GRAVITY / 2048.0;
 
 pub(super) const NOISY: &str = r#"
 seed = 2
@@ -136,6 +136,38 @@ fn mpu_packs_gyro_and_accel_together_when_they_tick_alike() {
     assert_eq!((imus, mags, configs), (500, 125, vec![0, 1, 2]));
     let first = driven(&packets)[0].1;
     assert!(matches!(first, mpu::Packet::Config(_)), "the scales come before what they scale");
+}
+
+#[test]
+fn the_registers_of_an_mpu_say_the_rate_and_the_filter_of_the_scene() {
+    let config = |scene: &str| {
+        let (packets, _) = play(&plan(scene), Protocol::Mpu, None);
+        match driven(&packets)[0].1 {
+            mpu::Packet::Config(config) => (config.config, config.smplrt_div, config.who_am_i),
+            other => panic!("{other:?} comes first"),
+        }
+    };
+    for (part, rate, filter, expected) in [
+        ("MPU-9250", "1 kHz", "", (1, 0)),
+        ("MPU-9250", "1 kHz", "DLPF 2", (2, 0)),
+        ("MPU-9250", "200 Hz", "DLPF 6", (6, 4)),
+        ("MPU-9250", "8 kHz", "DLPF 0", (0, 0)),
+        ("MPU-9250", "100 Hz", "30 Hz", (3, 9)),
+        ("MPU-6050", "1 kHz", "DLPF 0", (0, 7)),
+        ("MPU-6050", "8 kHz", "DLPF 0", (0, 0)),
+        ("MPU-6050", "2 kHz", "", (0, 3)),
+        ("MPU-6050", "50 Hz", "DLPF 5", (5, 19)),
+        ("MPU-6050", "4 Hz", "DLPF 0", (1, 249)),
+    ] {
+        let filter = if filter.is_empty() { String::new() } else { format!("filter = \"{filter}\"\n") };
+        let scene = format!("duration = \"0.5 s\"\n[gyro]\npart = \"{part}\"\nrate = \"{rate}\"\n{filter}");
+        let (low_pass, divider, who) = config(&scene);
+        assert_eq!((low_pass, divider), expected, "{part} {rate} {filter}");
+        let chip = registers::Chip::from_who_am_i(who).unwrap();
+        let hz = plan(&scene).sensors[0].rate.as_hz();
+        assert!((chip.sample_rate_hz(low_pass, divider) / hz - 1.0).abs() < 1e-12, "{part} {rate} {filter}");
+        assert_eq!(config(&plan(&scene).resolved), (low_pass, divider, who), "as resolved");
+    }
 }
 
 #[test]
@@ -271,7 +303,7 @@ fn mpu_scales_and_chip_follow_the_scene() {
 }
 
 /// The messages of `mavlink` packets, each with what it was sent as.
-fn flown(packets: &[Packet]) -> Vec<(&Packet, Message)> {
+pub(super) fn flown(packets: &[Packet]) -> Vec<(&Packet, Message)> {
     let mut decoder = mavlink::Decoder::new();
     let mut all = Vec::new();
     for (i, packet) in packets.iter().enumerate() {
@@ -425,7 +457,7 @@ fn protocols_have_names_and_a_burst_needs_both_sensors() {
     assert!(check(Protocol::Mpu, &Options::default(), &gyro.sensors).is_ok());
 }
 
-/// A sensor's ticks, of any of three kinds.
+/// A sensor's ticks, where there is one.
 fn any_ticks() -> impl Strategy<Value = Option<(u64, u64, i64)>> {
     prop_oneof![1 => Just(None), 3 => (1..400u64, 1..7u64, 0..300_000_000i64).prop_map(Some)]
 }
@@ -435,7 +467,7 @@ proptest! {
 
     #[test]
     fn every_sample_is_carried_once_or_counted_as_replaced(
-        ticks in [any_ticks(), any_ticks(), any_ticks()],
+        ticks in [any_ticks(), any_ticks(), any_ticks(), any_ticks(), any_ticks()],
         protocol in prop::sample::select(Protocol::ALL.to_vec()),
         layout in prop::sample::select(vec![None, Some(Layout::Separate), Some(Layout::Burst)]),
     ) {
@@ -454,14 +486,15 @@ proptest! {
         prop_assume!(check(protocol, &options, &sensors).is_ok());
         let setup = Setup { sensors: &sensors, axes: Axes::NedFrd, day: None, options, peer: Peer::default() };
         let mut encoder = encoder(protocol, &setup);
-        let (mut packets, mut made) = (Vec::new(), [0u64; 3]);
+        let (mut packets, mut made) = (Vec::new(), ByKind::<u64>::default());
         let end = SimTime(3 * NANOS);
         let due = Schedule::new(sensors.iter().map(|sensor| Ticks { rate: sensor.rate, phase: sensor.phase }), end);
-        let (mut carried, mut replaced, mut seen) = ([0u64; 3], [0u64; 3], 0);
+        let (mut carried, mut replaced, mut seen) = (ByKind::<u64>::default(), ByKind::<u64>::default(), 0);
         for due in due {
             let ticked = sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
             let readings: Vec<_> = ticked.map(|(i, sensor)| Reading::zero(i, sensor.kind)).collect();
-            readings.iter().for_each(|reading| made[reading.kind as usize] += 1);
+            let taken = readings.iter().filter(|reading| protocol.carries(reading.kind));
+            taken.for_each(|reading| made[reading.kind as usize] += 1);
             encoder.encode(&Now { t: due.t, truth: &at_rest(due.t), readings: &readings }, &mut packets);
             for packet in &packets[seen..] {
                 for (kind, (carried, replaced)) in carried.iter_mut().zip(&mut replaced).enumerate() {
@@ -471,7 +504,7 @@ proptest! {
             }
             seen = packets.len();
             let waiting = encoder.waiting();
-            let accounted = [0, 1, 2].map(|kind| carried[kind] + replaced[kind] + waiting[kind]);
+            let accounted: ByKind<u64> = std::array::from_fn(|kind| carried[kind] + replaced[kind] + waiting[kind]);
             prop_assert_eq!(made, accounted, "{:?} at {}", protocol, due.t);
         }
         prop_assert!(packets.windows(2).all(|pair| pair[0].due <= pair[1].due));
@@ -503,134 +536,95 @@ fn packets_report_the_temperature_of_a_part_that_warms_up() {
     assert_eq!(told, 400);
 }
 
-/// Every packet of a plan for `mavlink` with these options and a controller of that system.
-fn play_mavlink(plan: &Plan, options: Options, system: Option<u8>) -> Vec<Packet> {
-    let peer = Peer { system, ..Peer::default() };
-    let mut encoder = encoder(Protocol::Mavlink, &Setup { options, peer, ..setup(plan, None) });
-    let mut packets = Vec::new();
-    let played: Result<(), ()> =
-        Player::new(plan, plan.duration, 256).play(|Moment { t, truth, readings }| {
-            encoder.encode(&Now { t, truth, readings }, &mut packets);
-            Ok(())
-        });
-    played.unwrap();
-    packets
+/// A climbing vehicle with every sensor.
+const AIDED: &str = "seed = 5\nduration = \"3 s\"\n[earth]\nlatitude = \"59.93 deg\"\nlongitude = \"30.31 deg\"\naltitude = \"120 m\"\ndate = \"2026-11-22\"\n[start]\nvelocity = \"[10, 0, -5] m/s\"\n[gyro]\nrate = \"100 Hz\"\nnoise_std = \"1 deg/s\"\n[accel]\nrate = \"100 Hz\"\n[baro]\nrate = \"25 Hz\"\nnoise_std = \"3 Pa\"\ntemperature = \"31 degC\"\n[gps]\nrate = \"5 Hz\"\nnoise_std = \"1 m\"\n";
+
+#[test]
+fn mavlink_has_the_pressure_with_its_bits_where_the_barometer_ticked() {
+    let untold = AIDED.replace("temperature = \"31 degC\"\n", "");
+    for (scene, degrees) in [(AIDED, 31.0), (&untold, 25.0)] {
+        let (packets, readings) = play(&plan(scene), Protocol::Mavlink, None);
+        let baro = of(&readings, SensorKind::Baro);
+        let mut ticked = 0;
+        for (packet, message) in flown(&packets) {
+            let Message::HilSensor(seen) = message else { continue };
+            let ticks = baro.iter().any(|(t, _)| *t == packet.due);
+            let (_, newest) = baro.iter().rfind(|(t, _)| *t <= packet.due).unwrap();
+            let pascals = newest.value.v.x;
+            assert_eq!(seen.abs_pressure, (pascals / 100.0) as f32);
+            assert_eq!(seen.pressure_alt, crate::earth::pressure_altitude(pascals) as f32);
+            assert_eq!(seen.temperature, degrees);
+            let told = if degrees == 31.0 { hil_sensor::TEMPERATURE } else { 0 };
+            let expected = if ticks { 0x1A00 } else { told };
+            assert_eq!(seen.fields_updated & 0x1E00, expected, "{}", packet.due);
+            assert_eq!(packet.carries >> SensorKind::Baro as u8 & 1 == 1, ticks);
+            ticked += u32::from(ticks);
+        }
+        assert_eq!(ticked, 75);
+    }
 }
 
 #[test]
-fn mavlink_speaks_as_the_system_it_found_in_the_version_it_was_asked_for() {
-    let plan = plan(NOISY);
-    for (system, version) in [(None, Version::V2), (Some(7), Version::V1)] {
-        let options = Options { version, ..Options::default() };
-        let packets = play_mavlink(&plan, options, system);
-        let mut decoder = mavlink::Decoder::new();
-        let mut sensors = 0;
-        for packet in &packets {
-            decoder.feed(packet.bytes(), |received| {
-                let mavlink::Received { header, message, .. } = received.unwrap();
+fn what_a_protocol_has_no_place_for_is_said_and_not_sent() {
+    let aided = plan(AIDED);
+    let said = |protocol| warnings(protocol, &aided.sensors);
+    let mpu = said(Protocol::Mpu);
+    assert!(mpu.len() == 2 && mpu[0].contains("no place for baro") && mpu[1].contains("gps"), "{mpu:?}");
+    assert!(said(Protocol::Mavlink)[0].contains("no place for gps"));
+    assert!(said(Protocol::Csv).is_empty() && said(Protocol::Jsonl).is_empty());
+    let bare = AIDED.split("[baro]").next().unwrap();
+    let bytes = |scene: &str| -> Vec<u8> {
+        let (packets, _) = play(&plan(scene), Protocol::Mpu, None);
+        packets.iter().flat_map(|packet| packet.bytes().to_vec()).collect()
+    };
+    assert!(bytes(AIDED) == bytes(bare), "an added sensor leaves the stream as it was");
+}
+
+#[test]
+fn a_line_of_text_has_what_the_aid_says() {
+    let (packets, readings) = play(&plan(AIDED), Protocol::Csv, None);
+    let text = |packet: &Packet| String::from_utf8(packet.bytes().to_vec()).unwrap();
+    assert_eq!(text(&packets[0]), "t_ns,sensor,x,y,z,vn,ve,vd\n");
+    let sent = packets[1..].iter().map(text).zip(&readings);
+    let mut seen = 0;
+    for (line, (t, reading)) in sent {
+        let cells: Vec<&str> = line.trim_end_matches('\n').split(',').collect();
+        assert_eq!((cells[0].parse(), cells[1]), (Ok(t.0), reading.kind.name()));
+        match reading.kind {
+            SensorKind::Baro => {
+                assert_eq!(cells[2].parse(), Ok(reading.value.v.x));
+                assert_eq!(cells[3..], ["", ""]);
+            }
+            SensorKind::Gps => {
+                let fix = reading.fix.unwrap();
+                assert_eq!(cells[2].parse(), Ok(fix.position.latitude.to_degrees()));
+                assert_eq!(cells[3].parse(), Ok(fix.position.longitude.to_degrees()));
+                assert_eq!(cells[4].parse(), Ok(fix.position.altitude));
                 assert_eq!(
-                    (header.version, header.system, header.component),
-                    (version, system.unwrap_or(1), 51)
-                );
-                sensors += usize::from(matches!(message, Some(Message::HilSensor(_))));
-            });
-            // HIL_SENSOR of MAVLink 1 is never cut, and has no extension field.
-            if version == Version::V1 && packet.carries != 0 {
-                assert_eq!(packet.bytes().len(), 6 + 64 + 2);
-            }
-        }
-        assert_eq!(sensors, 500, "the same messages in both");
-    }
-}
-
-#[test]
-fn mavlink_sends_what_it_is_asked_for_fifty_times_a_second() {
-    let plan = plan(NOISY);
-    let extras = Extra::ALL.into_iter().fold(Extras::default(), Extras::with);
-    let packets = play_mavlink(&plan, Options { extras, ..Options::default() }, None);
-    let plain = play_mavlink(&plan, Options::default(), None);
-    let mut count = std::collections::BTreeMap::new();
-    let mut newest = None;
-    for (packet, message) in flown(&packets) {
-        *count.entry(message.name()).or_insert(0) += 1;
-        let truth = plan.trajectory.at(packet.due);
-        let (ms, us) = (packet.due.0 / 1_000_000, packet.due.0 / 1000);
-        let attitude = |[w, x, y, z]: [f32; 4]| {
-            let [w, x, y, z] = [w, x, y, z].map(f64::from);
-            Attitude::from_quat(glam::DQuat::from_xyzw(x, y, z, w).normalize())
-        };
-        match message {
-            Message::HilSensor(sensor) => newest = Some(sensor),
-            Message::HilStateQuaternion(state) => {
-                assert_eq!((state.time_usec as i64, packet.carries), (us, 0));
-                assert!(attitude(state.q).angle_to(truth.attitude) < 1e-6);
-                let mg = truth.force.v.to_array().map(|x| x / (1e-3 * STANDARD_GRAVITY));
-                assert!(
-                    state.accel.iter().zip(mg).all(|(seen, mg)| (f64::from(*seen) - mg).abs() <= 0.5 + 1e-9)
+                    [cells[5], cells[6], cells[7]].map(|cell| cell.parse::<f64>().unwrap()),
+                    [10.0, 0.0, -5.0]
                 );
             }
-            Message::AttitudeQuaternion(told) => {
-                assert_eq!(i64::from(told.time_boot_ms), ms);
-                assert!(attitude(told.q).angle_to(truth.attitude) < 1e-6);
-                let rate = truth.rate.v.to_array().map(|x| x as f32);
-                assert_eq!(told.angular_rate, rate);
-            }
-            Message::HighresImu(told) => {
-                let sensor = newest.unwrap();
-                assert_eq!((told.gyro, told.accel, told.mag), (sensor.gyro, sensor.accel, sensor.mag));
-                assert_eq!(told.fields_updated, 0x1FF, "all tick at 50 Hz and more");
-            }
-            Message::RawImu(told) => {
-                let (sensor, counts) = (newest.unwrap(), [GYRO_COUNT, ACCEL_COUNT, 0.15 / 100.0]);
-                for (raw, (value, count)) in [
-                    (told.gyro, (sensor.gyro, counts[0])),
-                    (told.accel, (sensor.accel, counts[1])),
-                    (told.mag, (sensor.mag, counts[2])),
-                ] {
-                    for (raw, value) in raw.into_iter().zip(value) {
-                        assert!((f64::from(raw) * count - f64::from(value)).abs() <= 0.5001 * count);
-                    }
-                }
-            }
-            Message::ScaledImu2(told) => {
-                let sensor = newest.unwrap();
-                for (milli, (value, unit)) in [
-                    (told.gyro, (sensor.gyro, 1.0)),
-                    (told.accel, (sensor.accel, STANDARD_GRAVITY)),
-                    (told.mag, (sensor.mag, 1.0)),
-                ] {
-                    for (milli, value) in milli.into_iter().zip(value) {
-                        assert!((f64::from(milli) * 1e-3 * unit - f64::from(value)).abs() <= 0.501e-3 * unit);
-                    }
-                }
-            }
-            _ => {}
+            _ => continue,
         }
+        seen += 1;
     }
-    let samples = |packets: &[Packet]| packets.iter().filter(|packet| packet.carries != 0).count();
-    assert_eq!(samples(&packets), samples(&plain), "what repeats a sample carries none");
-    for extra in Extra::ALL {
-        assert_eq!(count[extra.name().to_lowercase().as_str()], 125, "{}", extra.name());
-        assert_eq!(Extra::from_name(extra.name()), Some(extra));
-        let alone = play_mavlink(
-            &plan,
-            Options { extras: Extras::default().with(extra), ..Options::default() },
-            None,
-        );
-        assert_eq!(alone.len(), plain.len() + 125);
-    }
-}
-
-#[test]
-fn px4_is_not_told_the_truth() {
-    let sensors = plan(NOISY).sensors;
-    for controller in [None, Some(Controller::Px4), Some(Controller::Px4Sitl), Some(Controller::Ardupilot)] {
-        for extra in Extra::ALL {
-            let options = Options { controller, extras: Extras::default().with(extra), ..Options::default() };
-            let px4 = matches!(controller, Some(Controller::Px4 | Controller::Px4Sitl));
-            let refused = check(Protocol::Mavlink, &options, &sensors);
-            assert_eq!(refused.is_err(), px4 && extra.is_truth(), "{controller:?} {extra:?}");
-            assert!(refused.is_ok() || refused.unwrap_err().starts_with(extra.name()));
-        }
-    }
+    assert_eq!(seen, 75 + 15);
+    // The longest numbers there are still fit a packet.
+    let longest = f64::from_bits(0x800f_ffff_ffff_fffe);
+    let place = Place {
+        latitude: -1.234_567_890_123_456_7e-100,
+        longitude: -1.234_567_890_123_456_7e-100,
+        altitude: longest,
+    };
+    let velocity = Vector::new(longest, longest, longest);
+    let fix = Fix { position: place, velocity, true_position: place, true_velocity: velocity };
+    let reading = Reading { fix: Some(fix), ..Reading::zero(0, SensorKind::Gps) };
+    let plan = plan("duration = \"1 s\"\n[gps]\n");
+    let mut lines = Vec::new();
+    encoder(Protocol::Jsonl, &setup(&plan, None)).encode(
+        &Now { t: SimTime(i64::MAX), truth: &at_rest(SimTime::ZERO), readings: &[reading] },
+        &mut lines,
+    );
+    assert!(lines[0].bytes().ends_with(b"}\n"), "{}", text(&lines[0]));
 }

@@ -2,7 +2,7 @@
 
 use super::{Encoder, Now, Packet, Setup};
 use crate::geometry::Axes;
-use crate::sensor::Reading;
+use crate::sensor::{Fix, Reading, SensorKind};
 use crate::time::SimTime;
 use std::io::Write;
 
@@ -15,12 +15,16 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// `t_ns,sensor,x,y,z`, named in a first line.
+    /// `t_ns,sensor,x,y,z`, named in a first line. Of a barometer x is the pressure and the others are empty; of a GPS
+    /// receiver they are latitude and longitude in degrees and altitude, and its velocity follows.
     pub(super) fn csv(setup: &Setup<'_>) -> Text {
         Text {
             axes: setup.axes,
             json: false,
-            header: Some("t_ns,sensor,x,y,z\n"),
+            header: Some(match setup.sensors.iter().any(|sensor| sensor.kind == SensorKind::Gps) {
+                true => "t_ns,sensor,x,y,z,vn,ve,vd\n",
+                false => "t_ns,sensor,x,y,z\n",
+            }),
             line: Vec::with_capacity(256),
         }
     }
@@ -32,15 +36,42 @@ impl Text {
 
     fn write(&mut self, t: SimTime, reading: &Reading) {
         let v = self.axes.body_out(reading.value);
-        let (mut x, mut y, mut z) = (ryu::Buffer::new(), ryu::Buffer::new(), ryu::Buffer::new());
-        let (x, y, z) = (x.format(v.x), y.format(v.y), z.format(v.z));
-        let (t, name) = (t.0, reading.kind.name());
-        self.line.clear();
+        match (reading.kind, reading.fix) {
+            (SensorKind::Baro, _) => self.cells(t, reading.kind, &[("pa", v.x)]),
+            (_, Some(Fix { position, velocity, .. })) => {
+                let [vn, ve, vd] = velocity.v.to_array();
+                let (lat, lon) = (position.latitude.to_degrees(), position.longitude.to_degrees());
+                let place = [("lat", lat), ("lon", lon), ("alt", position.altitude)];
+                let cells = [place, [("vn", vn), ("ve", ve), ("vd", vd)]].concat();
+                self.cells(t, reading.kind, &cells);
+            }
+            _ => self.cells(t, reading.kind, &[("x", v.x), ("y", v.y), ("z", v.z)]),
+        }
+    }
+
+    /// A line of these numbers, called so in JSON; in CSV no line has fewer than three.
+    fn cells(&mut self, t: SimTime, kind: SensorKind, cells: &[(&str, f64)]) {
+        let (t, name, line) = (t.0, kind.name(), &mut self.line);
+        line.clear();
         // Writing to a vector cannot fail.
         let _ = match self.json {
-            false => writeln!(self.line, "{t},{name},{x},{y},{z}"),
-            true => writeln!(self.line, r#"{{"t_ns":{t},"sensor":"{name}","x":{x},"y":{y},"z":{z}}}"#),
+            false => write!(line, "{t},{name}"),
+            true => write!(line, r#"{{"t_ns":{t},"sensor":"{name}""#),
         };
+        let mut digits = ryu::Buffer::new();
+        for (key, value) in cells {
+            let number = digits.format(*value);
+            let _ = match self.json {
+                false => write!(line, ",{number}"),
+                true => write!(line, r#","{key}":{number}"#),
+            };
+        }
+        if self.json {
+            line.push(b'}');
+        } else {
+            line.resize(line.len() + 3usize.saturating_sub(cells.len()), b',');
+        }
+        line.push(b'\n');
     }
 }
 

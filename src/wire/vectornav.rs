@@ -5,7 +5,7 @@
 //! do not use that one. Axes are forward, right, down; the field is in gauss. The stream ends with a vehicle that has
 //! stopped.
 
-use super::latest::{Latest, in_units};
+use super::latest::{Latest, in_units, pascals};
 use super::mavlink::MICROTESLA_A_GAUSS;
 use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::geometry::{Euler, Vector};
@@ -18,8 +18,7 @@ use ratetable_protocols::vectornav::{self, MAX_LEN, ahrs, imu};
 const AHRS: Rate = Rate::hz(50);
 /// The standard deviation that an AHRS packet claims, degrees.
 const UNCERTAINTY: f32 = 0.1;
-/// The standard atmosphere at sea level, kPa.
-const SEA_LEVEL: f32 = 101.325;
+const PASCALS_A_KILOPASCAL: f64 = 1000.0;
 
 pub(super) struct Vectornav {
     latest: Latest,
@@ -54,7 +53,7 @@ impl Encoder for Vectornav {
 
     fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
         let Some(truth) = &self.last else { return };
-        let mut still: ByKind<Option<Reading>> = ByKind::default();
+        let mut still = *self.latest.newest();
         for (kind, value) in
             [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
         {
@@ -85,7 +84,7 @@ fn write(t: SimTime, newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usi
         raw_gyro: gyro,
         mag: in_units(mag, MICROTESLA_A_GAUSS),
         temperature: warm as f32,
-        pressure: SEA_LEVEL,
+        pressure: (pascals(newest) / PASCALS_A_KILOPASCAL) as f32,
     };
     encoded(&vectornav::Packet::Imu(imu), buffer)
 }

@@ -36,6 +36,7 @@ fn bits(kind: SensorKind) -> HilSensorUpdatedFlags {
         SensorKind::Gyro => 0x38,
         SensorKind::Accel => 0x7,
         SensorKind::Mag => 0x1c0,
+        SensorKind::Baro | SensorKind::Gps => panic!("no axes"),
     })
     .expect("bits of the dialect")
 }
@@ -46,6 +47,7 @@ fn fields(data: &HIL_SENSOR_DATA, kind: SensorKind) -> [f64; 3] {
         SensorKind::Gyro => [data.xgyro, data.ygyro, data.zgyro].map(f64::from),
         SensorKind::Accel => [data.xacc, data.yacc, data.zacc].map(f64::from),
         SensorKind::Mag => [data.xmag, data.ymag, data.zmag].map(|gauss| f64::from(gauss) * 100.0),
+        SensorKind::Baro | SensorKind::Gps => panic!("no axes"),
     }
 }
 

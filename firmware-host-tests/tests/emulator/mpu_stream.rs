@@ -81,6 +81,7 @@ fn counts(reading: &Reading, unit: f64) -> [f64; 3] {
     match reading.kind {
         SensorKind::Gyro | SensorKind::Accel => [forward, -right, -down],
         SensorKind::Mag => [-right, forward, down],
+        SensorKind::Baro | SensorKind::Gps => panic!("not in `mpu`"),
     }
 }
 

@@ -26,6 +26,9 @@ pub const GYRO: u16 = 0x0038;
 /// Bits of [`fields_updated`](Payload::fields_updated) for the magnetometer.
 pub const MAG: u16 = 0x01c0;
 
+/// Bit of `fields_updated` for the absolute pressure.
+pub const ABS_PRESSURE: u16 = 0x0200;
+
 mod field {
     use super::Range;
 

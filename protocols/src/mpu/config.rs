@@ -46,7 +46,7 @@ impl<T: AsRef<[u8]>> Payload<T> {
         bytes::le(self.0.as_ref(), field::WHO_AM_I)
     }
 
-    /// Register 0x19: sample rate divider; the rate is 1 kHz / (1 + this).
+    /// Register 0x19: sample rate divider; the rate is [`Chip::sample_rate_hz`](super::registers::Chip::sample_rate_hz).
     pub fn smplrt_div(&self) -> u8 {
         bytes::le(self.0.as_ref(), field::SMPLRT_DIV)
     }
@@ -129,7 +129,7 @@ impl<T: AsRef<[u8]> + AsMut<[u8]>> Payload<T> {
 pub struct Repr {
     /// Register 0x75: which chip this is.
     pub who_am_i: u8,
-    /// Register 0x19: sample rate divider; the rate is 1 kHz / (1 + this).
+    /// Register 0x19: sample rate divider; the rate is [`Chip::sample_rate_hz`](super::registers::Chip::sample_rate_hz).
     pub smplrt_div: u8,
     /// Register 0x1A: low-pass filter.
     pub config: u8,

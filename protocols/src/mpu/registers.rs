@@ -75,6 +75,29 @@ impl Chip {
     }
 }
 
+impl Chip {
+    /// Bandwidths of the gyro's low-pass filter in Hz that `CONFIG` (`DLPF_CFG`, bits 2:0) 0 to 6 select.
+    pub const fn gyro_bandwidths_hz(self) -> [f64; 7] {
+        match self {
+            Self::Mpu60x0 => [256.0, 188.0, 98.0, 42.0, 20.0, 10.0, 5.0],
+            Self::Mpu9250 => [250.0, 184.0, 92.0, 41.0, 20.0, 10.0, 5.0],
+        }
+    }
+
+    /// Samples a second that `CONFIG` and `SMPLRT_DIV` select.
+    ///
+    /// 8 kHz with `DLPF_CFG` 0 or 7, else 1 kHz, divided by one more than the divider; an MPU-9250 divides the 1 kHz
+    /// alone.
+    pub fn sample_rate_hz(self, config: u8, smplrt_div: u8) -> f64 {
+        let divider = 1.0 + f64::from(smplrt_div);
+        match (config & 7, self) {
+            (0 | 7, Self::Mpu60x0) => 8000.0 / divider,
+            (0 | 7, Self::Mpu9250) => 8000.0,
+            _ => 1000.0 / divider,
+        }
+    }
+}
+
 /// Counts per deg/s at the full scale that `GYRO_CONFIG` selects.
 ///
 /// ±250, 500, 1000 and 2000 deg/s; the published figures, which are rounded: 131 rather than
@@ -182,6 +205,21 @@ mod tests {
         assert_eq!(Chip::Mpu60x0.temperature_c(0), 36.53);
         assert_eq!(Chip::Mpu9250.temperature_raw(25.0), 1335);
         assert_eq!(Chip::from_who_am_i(0x12), None);
+    }
+
+    #[test]
+    fn the_sample_rate_is_that_of_the_register_map() {
+        for (chip, config, divider, hz) in [
+            (Chip::Mpu60x0, 0, 0, 8000.0),
+            (Chip::Mpu60x0, 0, 7, 1000.0),
+            (Chip::Mpu60x0, 1, 7, 125.0),
+            (Chip::Mpu9250, 0, 7, 8000.0),
+            (Chip::Mpu9250, 7, 0, 8000.0),
+            (Chip::Mpu9250, 3, 4, 200.0),
+            (Chip::Mpu9250, 0x46, 255, 1000.0 / 256.0),
+        ] {
+            assert_eq!(chip.sample_rate_hz(config, divider), hz, "{chip:?} {config} {divider}");
+        }
     }
 
     #[test]

@@ -55,6 +55,7 @@ pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
             "longitude_deg": plan.site.map(|site| site.longitude.to_degrees()),
             "altitude_m": plan.site.map(|site| site.altitude),
         },
+        "position": position(plan),
         "reference": reference.map(|(reference, choice)| {
             json!({
                 "from": reference.from(),
@@ -70,8 +71,23 @@ pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
         "sensors": sensors.collect::<Vec<_>>(),
         "effects": effects(plan),
         "links": links.collect::<Vec<_>>(),
+        "faults": plan.faults(),
         "limits": plan.limits.iter().map(|(limit, _)| limit).collect::<Vec<_>>(),
         "drawn": plan.drawn,
         "warnings": warnings(plan),
+    })
+}
+
+/// Where the vehicle begins and how fast; null of a scene without a sensor that tells.
+fn position(plan: &Plan) -> Value {
+    if plan.sensors.iter().all(|sensor| sensor.kind.is_triad()) {
+        return Value::Null;
+    }
+    let origin = plan.origin();
+    json!({
+        "latitude_deg": origin.latitude.to_degrees(),
+        "longitude_deg": origin.longitude.to_degrees(),
+        "altitude_m": origin.altitude,
+        "velocity_ned_m_s": plan.trajectory.start_velocity().v.to_array(),
     })
 }

@@ -6,7 +6,7 @@ use crate::earth;
 use crate::motion::method::Choice;
 use crate::report::{number, table};
 use crate::scene::{Plan, Reference};
-use crate::sensor::{Sampling, SensorPlan, lsb};
+use crate::sensor::{Claims, Sampling, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
 
 pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>) -> String {
@@ -16,11 +16,15 @@ pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
         text += &format!("reference.csv: from {from} by {method} at {rate}\n");
         text += &choice.map_or(String::new(), |choice| format!("chosen: {choice}\n"));
     }
+    text += &position(plan);
     text += &format!("\n{}", sensors(plan));
     text += "\nOne-sided density (datasheets) = √2 · random walk (Allan deviation at 1 s; Kalibr's noise density).\n";
     text += &format!("\n{}", effects::text(plan));
     if !plan.outputs.is_empty() {
         text += &format!("\n{}", outputs(plan));
+    }
+    for fault in plan.faults() {
+        text += &format!("fault: {fault}\n");
     }
     for (limit, _) in &plan.limits {
         text += &format!("limit: {limit}\n");
@@ -57,6 +61,21 @@ fn heading(plan: &Plan) -> String {
         );
     }
     text
+}
+
+/// Where the vehicle begins and how fast, of a scene with a sensor that tells.
+fn position(plan: &Plan) -> String {
+    if plan.sensors.iter().all(|sensor| sensor.kind.is_triad()) {
+        return String::new();
+    }
+    let (origin, velocity) = (plan.origin(), plan.trajectory.start_velocity().v);
+    let [north, east, down] = velocity.to_array().map(number);
+    format!(
+        "position: begins at {} deg north, {} deg east, {} m, with {north} m/s north, {east} east, {down} down\n",
+        number(origin.latitude.to_degrees()),
+        number(origin.longitude.to_degrees()),
+        number(origin.altitude)
+    )
 }
 
 fn sensors(plan: &Plan) -> String {
@@ -114,6 +133,11 @@ fn manner(sensor: &SensorPlan) -> String {
     }
     if let Some(mount) = sensor.mount {
         text += &format!(", mounted {mount}");
+    }
+    if sensor.kind == SensorKind::Gps {
+        let Claims { eph, epv, satellites } = Claims::of(&sensor.values);
+        let (eph, epv) = (number(eph), number(epv));
+        text += &format!(", claiming {eph} m horizontally, {epv} m vertically, {satellites} satellites");
     }
     text + "\n"
 }

@@ -103,7 +103,7 @@ pub fn cost(cost: &Cost) -> String {
     })
 }
 
-/// A picture a sensor: three axes with their bands, and theory.
+/// A picture a sensor: its axes with their bands, and theory.
 pub fn allan(points: &[allan::Point]) -> String {
     let mut sensors: Vec<_> = points.iter().map(|point| point.sensor).collect();
     sensors.dedup();
@@ -131,9 +131,12 @@ pub fn allan(points: &[allan::Point]) -> String {
             points: of(axis).iter().map(|point| (point.tau_s, point.theory)).collect(),
             band: Vec::new(),
         };
-        let axes = ["x", "y", "z"];
-        let same = |axis: &str| of(axis).iter().zip(of("x")).all(|(a, b)| a.theory == b.theory);
-        let theories = axes.iter().filter(|axis| **axis == "x" || !same(axis)).map(theory);
+        let mut axes: Vec<_> =
+            points.iter().filter(|point| point.sensor == *sensor).map(|point| point.axis).collect();
+        axes.dedup();
+        let first = axes.first().copied().unwrap_or_default();
+        let same = |axis: &str| of(axis).iter().zip(of(first)).all(|(a, b)| a.theory == b.theory);
+        let theories = axes.iter().filter(|axis| **axis == first || !same(axis)).map(theory);
         chart::curves(&chart::Curves {
             title: format!("Allan deviation of the {sensor}"),
             subtitle:

@@ -138,8 +138,12 @@ pub fn cost(cost: &Cost) -> String {
         let normals = number(cost.normals_per_sample);
         format!("; its {normals} normal numbers alone: {} million; ratio {}", millions(floor), number(ratio))
     });
+    let cores = cost.cores.as_ref().map_or(String::new(), |cores| {
+        let (rate, times) = (millions(cores.nine_axis_samples_per_s), number(cores.times_one));
+        format!("{} threads, a run each: {rate} million; {times} times one\n", cores.threads)
+    });
     format!(
-        "{}\n{} million nine-axis samples/s of {}, one thread{floor}\n",
+        "{}\n{} million nine-axis samples/s of {}, one thread{floor}\n{cores}",
         table(&["with", "ns more", "ns a sample"], &rows.collect::<Vec<_>>()),
         millions(cost.nine_axis_samples_per_s),
         cost.scene,

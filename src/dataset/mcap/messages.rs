@@ -10,6 +10,8 @@ use crate::time::{NANOS, SimTime};
 pub(super) enum Kind {
     Imu,
     MagneticField,
+    FluidPressure,
+    NavSatFix,
     Quaternion,
     Vector,
 }
@@ -75,6 +77,43 @@ impl Kind {
                     "geometry_msgs/Vector3": three!()
                 ),
             ),
+            Kind::FluidPressure => (
+                "sensor_msgs/msg/FluidPressure",
+                with!(
+                    "std_msgs/Header header\nfloat64 fluid_pressure\nfloat64 variance\n",
+                    "std_msgs/Header": header!(),
+                    "builtin_interfaces/Time": time!()
+                ),
+            ),
+            Kind::NavSatFix => (
+                "sensor_msgs/msg/NavSatFix",
+                with!(
+                    "uint8 COVARIANCE_TYPE_UNKNOWN=0\n\
+                     uint8 COVARIANCE_TYPE_APPROXIMATED=1\n\
+                     uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\n\
+                     uint8 COVARIANCE_TYPE_KNOWN=3\n\
+                     std_msgs/Header header\n\
+                     sensor_msgs/NavSatStatus status\n\
+                     float64 latitude\n\
+                     float64 longitude\n\
+                     float64 altitude\n\
+                     float64[9] position_covariance\n\
+                     uint8 position_covariance_type\n",
+                    "std_msgs/Header": header!(),
+                    "builtin_interfaces/Time": time!(),
+                    "sensor_msgs/NavSatStatus":
+                        "int8 STATUS_NO_FIX=-1\n\
+                         int8 STATUS_FIX=0\n\
+                         int8 STATUS_SBAS_FIX=1\n\
+                         int8 STATUS_GBAS_FIX=2\n\
+                         uint16 SERVICE_GPS=1\n\
+                         uint16 SERVICE_GLONASS=2\n\
+                         uint16 SERVICE_COMPASS=4\n\
+                         uint16 SERVICE_GALILEO=8\n\
+                         int8 status\n\
+                         uint16 service\n"
+                ),
+            ),
             Kind::Vector => (
                 "geometry_msgs/msg/Vector3Stamped",
                 with!(
@@ -130,6 +169,26 @@ pub(super) fn magnetic_field(stamped: Stamped, field: [f64; 3], bytes: &mut Vec<
     cdr.covariance(true);
 }
 
+/// `sensor_msgs/msg/FluidPressure` of a pressure in Pa; its variance is 0, unknown.
+pub(super) fn fluid_pressure(stamped: Stamped, pressure: f64, bytes: &mut Vec<u8>) {
+    Cdr::begin(stamped, bytes).doubles(&[pressure, 0.0]);
+}
+
+/// `sensor_msgs/msg/NavSatFix` of latitude and longitude in degrees and altitude in m: a GPS fix, its covariance
+/// unknown.
+pub(super) fn nav_sat_fix(stamped: Stamped, place: [f64; 3], bytes: &mut Vec<u8>) {
+    const STATUS_FIX: u8 = 0;
+    const SERVICE_GPS: u16 = 1;
+    const COVARIANCE_TYPE_UNKNOWN: u8 = 0;
+    let mut cdr = Cdr::begin(stamped, bytes);
+    cdr.0.push(STATUS_FIX);
+    cdr.align(2);
+    cdr.0.extend_from_slice(&SERVICE_GPS.to_le_bytes());
+    cdr.doubles(&place);
+    cdr.doubles(&[0.0; 9]);
+    cdr.0.push(COVARIANCE_TYPE_UNKNOWN);
+}
+
 /// `geometry_msgs/msg/QuaternionStamped` of `[w, x, y, z]`.
 pub(super) fn quaternion(stamped: Stamped, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
     Cdr::begin(stamped, bytes).doubles(&[x, y, z, w]);
@@ -161,9 +220,14 @@ impl Cdr<'_> {
         Cdr(bytes)
     }
 
-    fn doubles(&mut self, values: &[f64]) {
-        let length = (self.0.len() - ENCAPSULATION.len()).next_multiple_of(8);
+    /// Goes on at a multiple of so many bytes.
+    fn align(&mut self, bytes: usize) {
+        let length = (self.0.len() - ENCAPSULATION.len()).next_multiple_of(bytes);
         self.0.resize(ENCAPSULATION.len() + length, 0);
+    }
+
+    fn doubles(&mut self, values: &[f64]) {
+        self.align(8);
         values.iter().for_each(|value| self.0.extend_from_slice(&plain(*value).to_le_bytes()));
     }
 

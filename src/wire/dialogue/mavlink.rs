@@ -17,6 +17,7 @@ use crate::wire::mavlink::{COMPONENT, NO_AUTOPILOT};
 use asking::Asking;
 use glam::DQuat;
 use px4::Px4;
+use ratetable_protocols::Error;
 use ratetable_protocols::mavlink::{
     Decoder, Header, Message, Received, attitude, attitude_quaternion, command_ack, heartbeat,
     hil_actuator_controls, timesync,
@@ -30,10 +31,16 @@ const GROUND_STATION: u8 = 6;
 /// angles only when none has come for so long, ns.
 const QUATERNION_GONE: i64 = 1_000_000_000;
 
+/// After so long without a byte what is held is judged as it is, ns: noise that looks like the start of a long packet
+/// would hide the heartbeats behind it, and a message that cannot be checked waits for the next one.
+const PAUSE: i64 = 100_000_000;
+
 /// The conversation on one link.
 pub(super) struct Mavlink {
     decoder: Decoder,
     ear: Ear,
+    /// When bytes came that may wait for more.
+    heard_at: Option<i64>,
 }
 
 /// The autopilot at the other end.
@@ -74,6 +81,7 @@ impl Mavlink {
         };
         Mavlink {
             decoder: Decoder::new(),
+            heard_at: None,
             ear: Ear {
                 voice: Voice::default(),
                 autopilot: None,
@@ -86,16 +94,27 @@ impl Mavlink {
     }
 }
 
+impl Mavlink {
+    /// Judges what is held if nothing has come behind it for a while.
+    fn end_of_burst(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        if self.heard_at.is_some_and(|at| now - at > PAUSE) {
+            self.heard_at = None;
+            let Mavlink { decoder, ear, .. } = self;
+            decoder.finish_whole(|received| ear.take(received, now, say));
+        }
+    }
+}
+
 impl Dialogue for Mavlink {
     fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        let Mavlink { decoder, ear } = self;
-        decoder.feed_whole(bytes, |received| match received {
-            Ok((received, packet)) => ear.take(&received, packet, now, say),
-            Err(_) => ear.damaged += 1,
-        });
+        self.end_of_burst(now, say);
+        self.heard_at = Some(now);
+        let Mavlink { decoder, ear, .. } = self;
+        decoder.feed_whole(bytes, |received| ear.take(received, now, say));
     }
 
     fn tick(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        self.end_of_burst(now, say);
         let Ear { voice, autopilot, asking, way, .. } = &mut self.ear;
         if let Way::Hitl(px4) = way {
             px4.tick(now, autopilot.as_ref(), voice, say);
@@ -124,8 +143,11 @@ impl Dialogue for Mavlink {
 }
 
 impl Ear {
-    fn take(&mut self, received: &Received, packet: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        let Received { header, id, message } = *received;
+    fn take(&mut self, received: Result<(Received, &[u8]), Error>, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        let Ok((Received { header, id, message }, packet)) = received else {
+            self.damaged += 1;
+            return;
+        };
         if [COMPONENT, voice::COMPONENT].contains(&header.component) {
             // Our own words, on a line that is looped back.
             return;

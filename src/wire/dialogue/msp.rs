@@ -5,12 +5,15 @@
 
 use super::{Controller, Dialogue, Estimate, Said, Stage, Stamp};
 use crate::geometry::{Attitude, Euler};
+use ratetable_protocols::Error;
 use ratetable_protocols::msp::{self, Decoder, Direction, MAX_LEN, Message, Received, fc_variant, simulator};
 
 /// Between two questions, ns.
 const ASK_EVERY: i64 = 500_000_000;
 /// How long nobody answers before that is said, ns.
 const PATIENCE: i64 = 5_000_000_000;
+/// After so long a pause, ns, what began before it is not waited for.
+const PAUSE: i64 = 100_000_000;
 
 /// One link to a flight controller that speaks MSP.
 pub(super) struct Inav {
@@ -20,6 +23,8 @@ pub(super) struct Inav {
     /// When it was first asked, and when it is next.
     asked: Option<i64>,
     ask_at: i64,
+    /// When bytes came last, until a pause after them.
+    heard: Option<i64>,
     told: Told,
 }
 
@@ -41,26 +46,38 @@ impl Inav {
             stage,
             asked: None,
             ask_at: i64::MIN,
+            heard: None,
             told: Told::default(),
+        }
+    }
+
+    fn take(&mut self, received: Result<Received, Error>, say: &mut dyn FnMut(Said<'_>)) {
+        match received {
+            // Our own, on a link that echoes.
+            Ok(Received { direction: Direction::Request, .. }) => {}
+            Ok(received) => {
+                self.stage = self.stage.max(stage_after(&received));
+                judge(&received, &mut self.told, say);
+            }
+            Err(_) => self.damaged += 1,
         }
     }
 }
 
 impl Dialogue for Inav {
-    fn hear(&mut self, bytes: &[u8], _now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        let Inav { decoder, damaged, stage, told, .. } = self;
-        decoder.feed(bytes, |received| match received {
-            // Our own, on a link that echoes.
-            Ok(Received { direction: Direction::Request, .. }) => {}
-            Ok(received) => {
-                *stage = (*stage).max(stage_after(&received));
-                judge(&received, told, say);
-            }
-            Err(_) => *damaged += 1,
-        });
+    fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        self.heard = Some(now);
+        let mut decoder = std::mem::take(&mut self.decoder);
+        decoder.feed(bytes, |received| self.take(received, say));
+        self.decoder = decoder;
     }
 
     fn tick(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        if self.heard.take_if(|heard| now - *heard >= PAUSE).is_some() {
+            let mut decoder = std::mem::take(&mut self.decoder);
+            decoder.finish(|received| self.take(received, say));
+            self.decoder = decoder;
+        }
         if self.stage != Stage::Silent {
             return;
         }
@@ -137,6 +154,7 @@ fn estimate(roll: f64, pitch: f64, yaw: f64) -> Said<'static> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use ratetable_protocols::msp::{attitude, simulator_reply};
 
     /// What is said in answer to a message, or of itself at a time.
@@ -232,6 +250,22 @@ mod tests {
         }
         assert_eq!(inav.stage(), Stage::Still, "it answers, but does not hear the stream");
         assert!(hear(&mut inav, &Message::FcVariant(fc_variant::Repr { name: fc_variant::INAV })).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_do_not_hide_the_answer_behind_them(
+            bytes in prop::collection::vec(
+                prop_oneof![any::<u8>(), prop::sample::select(b"$X>!<\x1f\x20\0".to_vec())],
+                0..400,
+            ),
+            piece in 1..100usize,
+        ) {
+            let mut inav = Inav::new(Some(Controller::Inav));
+            bytes.chunks(piece).for_each(|piece| inav.hear(piece, 0, &mut |_| {}));
+            inav.tick(PAUSE, &mut |_| {});
+            close(&hear(&mut inav, &simulated([300, -100, 900])), [30.0, 10.0, 90.0]);
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@
 
 use super::{Controller, Dialogue, Peer, Said, Stage};
 use crate::time::Rate;
+use ratetable_protocols::Error;
 use ratetable_protocols::vectornav::line::Line;
 use ratetable_protocols::vectornav::{Decoder, MAX_LEN, Packet, encode};
 
@@ -17,6 +18,8 @@ const MODEL: &str = "VNRRG,01,VN-100T-CR";
 const ERROR: &str = "VNERR,12";
 /// How long nothing is asked before that is said, ns.
 const PATIENCE: i64 = 10_000_000_000;
+/// After so long a pause, ns, what began before it is not waited for.
+const PAUSE: i64 = 100_000_000;
 
 /// One link to a flight controller that takes this for its VN-100.
 pub(super) struct Unit {
@@ -26,6 +29,8 @@ pub(super) struct Unit {
     /// At which it asked for IMU packets.
     rate: Option<Rate>,
     since: Option<i64>,
+    /// When bytes came last, until a pause after them.
+    heard: Option<i64>,
     asked: bool,
     told_silence: bool,
 }
@@ -80,8 +85,21 @@ impl Unit {
             stage,
             rate: None,
             since: None,
+            heard: None,
             asked: false,
             told_silence: false,
+        }
+    }
+
+    fn take(&mut self, received: Result<Packet, Error>, say: &mut dyn FnMut(Said<'_>)) {
+        match received {
+            Ok(Packet::Line(line)) => self.obey(&line, say),
+            // Our own, on a link that echoes.
+            Ok(Packet::Imu(_) | Packet::Ahrs(_)) => {}
+            Err(_) => {
+                self.damaged += 1;
+                reply(ERROR, say);
+            }
         }
     }
 
@@ -129,21 +147,19 @@ impl Unit {
 }
 
 impl Dialogue for Unit {
-    fn hear(&mut self, bytes: &[u8], _now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        let mut decoder = self.decoder.clone();
-        decoder.feed(bytes, |received| match received {
-            Ok(Packet::Line(line)) => self.obey(&line, say),
-            // Our own, on a link that echoes.
-            Ok(Packet::Imu(_) | Packet::Ahrs(_)) => {}
-            Err(_) => {
-                self.damaged += 1;
-                reply(ERROR, say);
-            }
-        });
+    fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        self.heard = Some(now);
+        let mut decoder = std::mem::take(&mut self.decoder);
+        decoder.feed(bytes, |received| self.take(received, say));
         self.decoder = decoder;
     }
 
     fn tick(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        if self.heard.take_if(|heard| now - *heard >= PAUSE).is_some() {
+            let mut decoder = std::mem::take(&mut self.decoder);
+            decoder.finish(|received| self.take(received, say));
+            self.decoder = decoder;
+        }
         let since = *self.since.get_or_insert(now);
         let silent = self.stage == Stage::Silent && !self.asked && now - since >= PATIENCE;
         if silent && !std::mem::replace(&mut self.told_silence, true) {
@@ -176,6 +192,7 @@ fn reply(text: &str, say: &mut dyn FnMut(Said<'_>)) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     /// Replies as text, notices behind a `#`.
     fn hear(unit: &mut Unit, bytes: &[u8]) -> String {
@@ -260,10 +277,13 @@ mod tests {
                 let mut unit = new();
                 let heard = hear(&mut unit, &hurt);
                 // A digit of the checksum in its small letter says the same.
-                let small = bit / 8 >= bytes.len() - 4 && hurt[bit / 8].is_ascii_lowercase();
+                let at = bit / 8;
+                let small = at >= bytes.len() - 4 && hurt[at].eq_ignore_ascii_case(&bytes[at]);
                 assert!(!heard.contains(command) || small, "{heard}");
                 assert_eq!(unit.stage() == Stage::Ready, small && command == HANDSHAKE[6]);
-                shake_hands(&mut unit);
+                if unit.stage() == Stage::Silent {
+                    shake_hands(&mut unit);
+                }
             }
         }
     }
@@ -294,6 +314,25 @@ mod tests {
         let len = encode(&Packet::Imu(Default::default()), &mut bytes).unwrap();
         assert_eq!(hear(&mut unit, &bytes[..len]), "");
         assert_eq!(unit.stage(), Stage::Silent);
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_do_not_keep_the_handshake_from_its_end(
+            bytes in prop::collection::vec(
+                prop_oneof![any::<u8>(), prop::sample::select(b"$VNASYRGW,*0123\r\n\xfa\x01\x21\x07".to_vec())],
+                0..400,
+            ),
+            piece in 1..100usize,
+        ) {
+            let mut unit = new();
+            bytes.chunks(piece).for_each(|piece| drop(hear(&mut unit, piece)));
+            prop_assume!(unit.stage() == Stage::Silent);
+            // A pause, as before a command is sent again.
+            unit.tick(PAUSE, &mut |_| {});
+            shake_hands(&mut unit);
+            prop_assert_eq!(unit.stage(), Stage::Ready);
+        }
     }
 
     #[test]

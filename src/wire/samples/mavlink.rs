@@ -6,11 +6,11 @@ use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
-use crate::wire::mavlink::{MASKS, MICROTESLA_A_GAUSS};
+use crate::wire::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
 use glam::DVec3;
 use ratetable_protocols::mavlink::{
-    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, scaled_imu,
-    scaled_imu2, scaled_imu3,
+    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, hil_sensor,
+    scaled_imu, scaled_imu2, scaled_imu3,
 };
 use ratetable_protocols::{Error, Losses};
 use std::collections::BTreeMap;
@@ -73,49 +73,55 @@ impl Senders {
     }
 }
 
-/// What a message with readings says, of gyro, accel and mag.
+/// The bits of gyro, accel, mag and baro in HIL_SENSOR; the temperature may be another sensor's.
+const HIL_SENSOR: [u32; 4] =
+    [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG, hil_sensor::PRESSURE & !hil_sensor::TEMPERATURE];
+
+/// What a message with readings says, of gyro, accel, mag and baro.
 struct Inertial {
     source: Source,
     t: Option<SimTime>,
     /// Which are new.
-    fresh: [bool; 3],
+    fresh: [bool; 4],
     /// In the message's own units.
-    values: [[f64; 3]; 3],
+    values: [[f64; 3]; 4],
     /// What those are in ours; `None` for counts.
-    units: Option<[f64; 3]>,
+    units: Option<[f64; 4]>,
 }
 
 impl Inertial {
     /// `None` for messages without readings.
     fn of(message: &Message, [system, component]: [u8; 2]) -> Option<Inertial> {
         let source = |set| Source { message: message.name(), set: [system, component, set] };
-        let gauss = [1.0, 1.0, MICROTESLA_A_GAUSS];
+        let floating = [1.0, 1.0, MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL];
+        let pressure = |hectopascals| [hectopascals, 0.0, 0.0];
         let (id, ns, fresh, values, units) = match message {
             Message::HilSensor(seen) => {
-                let fresh = MASKS.map(|mask| seen.fields_updated & mask != 0);
+                let fresh = HIL_SENSOR.map(|mask| seen.fields_updated & mask != 0);
                 (
                     seen.id,
                     micros(seen.time_usec),
                     fresh,
-                    floats([seen.gyro, seen.accel, seen.mag]),
-                    Some(gauss),
+                    floats([seen.gyro, seen.accel, seen.mag, pressure(seen.abs_pressure)]),
+                    Some(floating),
                 )
             }
             Message::HighresImu(seen) => {
-                let masks = [highres_imu::GYRO, highres_imu::ACCEL, highres_imu::MAG];
+                let masks =
+                    [highres_imu::GYRO, highres_imu::ACCEL, highres_imu::MAG, highres_imu::ABS_PRESSURE];
                 let fresh = masks.map(|mask| seen.fields_updated & mask != 0);
                 (
                     seen.id,
                     micros(seen.time_usec),
                     fresh,
-                    floats([seen.gyro, seen.accel, seen.mag]),
-                    Some(gauss),
+                    floats([seen.gyro, seen.accel, seen.mag, pressure(seen.abs_pressure)]),
+                    Some(floating),
                 )
             }
             Message::ScaledImu(scaled_imu::Repr { time_boot_ms, accel, gyro, mag, .. })
             | Message::ScaledImu2(scaled_imu2::Repr { time_boot_ms, accel, gyro, mag, .. })
             | Message::ScaledImu3(scaled_imu3::Repr { time_boot_ms, accel, gyro, mag, .. }) => {
-                let milli = [1e-3, 1e-3 * STANDARD_GRAVITY, 1e-3 * MICROTESLA_A_GAUSS];
+                let milli = [1e-3, 1e-3 * STANDARD_GRAVITY, 1e-3 * MICROTESLA_A_GAUSS, 0.0];
                 let ns = Some(i64::from(*time_boot_ms) * 1_000_000);
                 (0, ns, present(*mag), ints([*gyro, *accel, *mag]), Some(milli))
             }
@@ -134,8 +140,9 @@ impl Inertial {
 
     fn hand_on(&self, each: &mut impl FnMut(Sample)) {
         let Inertial { source, t, fresh, values, units } = *self;
-        for kind in SensorKind::ALL.into_iter().filter(|kind| fresh[*kind as usize]) {
-            let vector = |units: [f64; 3]| DVec3::from_array(values[kind as usize]) * units[kind as usize];
+        let fresh = SensorKind::ALL.into_iter().zip(fresh).filter(|(_, fresh)| *fresh);
+        for (kind, _) in fresh {
+            let vector = |units: [f64; 4]| DVec3::from_array(values[kind as usize]) * units[kind as usize];
             let value = units.map(vector).filter(|value| value.is_finite()).map(Vector::from_vec);
             each(Sample { kind, source, t, value });
         }
@@ -148,14 +155,14 @@ fn micros(us: u64) -> Option<i64> {
 }
 
 /// A message without a mask has gyro and accel; a field of exactly nothing is a magnetometer that is not there.
-fn present(mag: [i16; 3]) -> [bool; 3] {
-    [true, true, mag != [0; 3]]
+fn present(mag: [i16; 3]) -> [bool; 4] {
+    [true, true, mag != [0; 3], false]
 }
 
-fn floats(values: [[f32; 3]; 3]) -> [[f64; 3]; 3] {
+fn floats(values: [[f32; 3]; 4]) -> [[f64; 3]; 4] {
     values.map(|vector| vector.map(f64::from))
 }
 
-fn ints(values: [[i16; 3]; 3]) -> [[f64; 3]; 3] {
-    values.map(|vector| vector.map(f64::from))
+fn ints([gyro, accel, mag]: [[i16; 3]; 3]) -> [[f64; 3]; 4] {
+    [gyro, accel, mag, [0; 3]].map(|vector| vector.map(f64::from))
 }

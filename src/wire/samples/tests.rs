@@ -38,7 +38,7 @@ mount = "luf"
 
 fn assumed(plan: &Plan) -> Assumed {
     let mount = |kind| plan.sensors.iter().find(|sensor| sensor.kind == kind).and_then(|sensor| sensor.mount);
-    let mounts = SensorKind::ALL.map(|kind| mount(kind).unwrap_or(Mount::flu()));
+    let mounts = SensorKind::TRIADS.map(|kind| mount(kind).unwrap_or(Mount::flu()));
     Assumed { axes: plan.axes, mounts }
 }
 
@@ -70,7 +70,7 @@ fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
 
 /// The first thing in which the samples differ from the readings that were sent.
 fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample]) -> Option<String> {
-    for kind in SensorKind::ALL {
+    for kind in SensorKind::TRIADS {
         let sent: Vec<_> = sent.iter().filter(|(_, reading)| reading.kind == kind).collect();
         let came: Vec<_> = samples.iter().filter(|sample| sample.kind == kind).collect();
         if sent.len() != came.len() {
@@ -144,7 +144,7 @@ fn a_swapped_axis_is_noticed() {
         for change in changes {
             // The field in `msp` has no value to be wrong.
             let has_value = |kind: &SensorKind| (protocol, *kind) != (Protocol::Msp, SensorKind::Mag);
-            for kind in SensorKind::ALL.into_iter().filter(has_value) {
+            for kind in SensorKind::TRIADS.into_iter().filter(has_value) {
                 let changed = |sample: &Sample| match sample.value {
                     Some(value) if sample.kind == kind => {
                         let [x, y, z] = change(value.v.to_array());
@@ -186,7 +186,7 @@ fn mavlink_gives_only_what_a_message_says_is_new() {
     let plan = plan(MIXED);
     let (packets, _) = play(&plan, Protocol::Mavlink, None);
     let (samples, counts) = read(Samples::new(Protocol::Mavlink), &bytes(&packets), 50);
-    for kind in SensorKind::ALL {
+    for kind in SensorKind::TRIADS {
         let carried = packets.iter().filter(|packet| packet.carries >> kind as u8 & 1 == 1).count();
         assert_eq!(samples.iter().filter(|sample| sample.kind == kind).count(), carried, "{kind}");
     }
@@ -304,6 +304,28 @@ fn a_damaged_packet_costs_itself_and_is_counted() {
 }
 
 #[test]
+fn damage_to_a_packet_without_a_number_costs_it_and_is_counted() {
+    let plan = plan(TOGETHER);
+    for protocol in [Protocol::Msp, Protocol::Vectornav, Protocol::Mip] {
+        let packets = &play(&plan, protocol, None).0[..16];
+        let whole = read(Samples::new(protocol), &bytes(packets), 64).0;
+        for hurt in [1, 4] {
+            for bit in 0..packets[hurt].bytes().len() * 8 {
+                let mut damaged: Vec<_> = packets.iter().map(|packet| packet.bytes().to_vec()).collect();
+                damaged[hurt][bit / 8] ^= 1 << (bit % 8);
+                let (samples, counts) = read(Samples::new(protocol), &damaged.concat(), 4096);
+                let cost = if packets[hurt].carries == 0 { 0 } else { 3 };
+                assert_eq!(samples.len(), whole.len() - cost, "{protocol:?} packet {hurt} bit {bit}");
+                // A frame of `msp` that goes the other way is a whole one that means something else.
+                let turned = protocol == Protocol::Msp && counts.foreign.contains_key("reply 8223");
+                assert_eq!(counts.damaged, u64::from(!turned), "{protocol:?} packet {hurt} bit {bit}");
+                assert_eq!(counts.lost, 0);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_stream_joined_midway_is_not_damaged_and_has_values_once_they_have_a_scale() {
     for (protocol, packets) in numbered() {
         let second = packets.iter().position(|packet| packet.due >= SimTime(crate::time::NANOS)).unwrap();
@@ -338,7 +360,7 @@ fn lines_of_others_are_read_as_far_as_they_are_samples() {
     for (protocol, text, kinds, foreign, damaged) in [
         (
             Protocol::Csv,
-            "t_ns,sensor,x,y,z\n5,gyro,1,2,3,extra\r\n\n# remark\n6,baro,1,2,3\n7,mag,1,2\n8,mag,1,2,3",
+            "t_ns,sensor,x,y,z\n5,gyro,1,2,3,extra\r\n\n# remark\n6,sonar,1,2,3\n7,mag,1,2\n8,mag,1,2,3",
             2,
             1,
             1,
@@ -412,5 +434,29 @@ proptest! {
         for sample in came {
             prop_assert!(rest.any(|sent| sent.kind == sample.kind && sent.t == sample.t), "{sample:?} was not sent");
         }
+    }
+}
+
+/// Pressure comes back by every protocol that has it; of a fix that it came, and when.
+#[test]
+fn a_barometer_comes_back_and_a_fix_is_counted() {
+    let scene =
+        format!("{NOISY}[baro]\nrate = \"200 Hz\"\nnoise_std = \"3 Pa\"\ntemperature = \"30 degC\"\n[gps]\n");
+    let plan = plan(&scene.replace("50 Hz", "200 Hz"));
+    for protocol in [Protocol::Mavlink, Protocol::Csv, Protocol::Jsonl] {
+        let (packets, readings) = play(&plan, protocol, None);
+        let (samples, counts) = read(Samples::new(protocol), &bytes(&packets), 1000);
+        assert_eq!(counts.damaged, 0);
+        let sent = readings.iter().filter(|(_, reading)| reading.kind == SensorKind::Baro);
+        let came: Vec<_> = samples.iter().filter(|sample| sample.kind == SensorKind::Baro).collect();
+        assert!(came.len() > 400 && came.len() == sent.clone().count(), "{protocol:?}: {}", came.len());
+        for ((t, reading), sample) in sent.zip(came) {
+            let (seen, sent) = (sample.value.unwrap().v, reading.value.v);
+            let slack = if protocol == Protocol::Mavlink { sent.x * 2e-7 } else { 0.0 };
+            assert!((seen.x - sent.x).abs() <= slack && seen.y == 0.0 && seen.z == 0.0, "{seen} of {sent}");
+            assert_eq!(sample.t, Some(*t));
+        }
+        let fixes = samples.iter().filter(|sample| sample.kind == SensorKind::Gps).count();
+        assert_eq!(fixes, if protocol == Protocol::Mavlink { 0 } else { 13 }, "{protocol:?}");
     }
 }

@@ -19,15 +19,32 @@ pub(super) struct Reader {
     overlong: bool,
 }
 
-/// A line of either kind.
+/// A line of either kind: three components, the pressure of a barometer, or something else of which only the time is
+/// read, such as a receiver's fix.
 #[derive(serde::Deserialize)]
 struct Line<'l> {
     t_ns: i64,
     #[serde(borrow)]
     sensor: Cow<'l, str>,
-    x: f64,
-    y: f64,
-    z: f64,
+    x: Option<f64>,
+    y: Option<f64>,
+    z: Option<f64>,
+    pa: Option<f64>,
+}
+
+impl Line<'_> {
+    fn kind(&self) -> Option<SensorKind> {
+        SensorKind::ALL.into_iter().find(|kind| kind.name() == self.sensor)
+    }
+
+    /// Whether it has what a line of its sensor has.
+    fn is_whole(&self) -> bool {
+        match self.kind() {
+            Some(SensorKind::Baro) => self.pa.is_some(),
+            Some(SensorKind::Gps) => true,
+            _ => self.x.is_some() && self.y.is_some() && self.z.is_some(),
+        }
+    }
 }
 
 impl Reader {
@@ -36,7 +53,9 @@ impl Reader {
     }
 
     pub(super) fn jsonl(axes: Axes) -> Reader {
-        Reader::new(axes, Source::only("jsonl"), |line| serde_json::from_str(line).ok())
+        Reader::new(axes, Source::only("jsonl"), |line| {
+            serde_json::from_str(line).ok().filter(Line::is_whole)
+        })
     }
 
     fn new(axes: Axes, source: Source, parse: for<'l> fn(&'l str) -> Option<Line<'l>>) -> Reader {
@@ -69,7 +88,7 @@ impl Reader {
         match line.map(|line| (line, (self.parse)(line))) {
             Some((_, Some(line))) => {
                 counts.packets += 1;
-                match SensorKind::ALL.into_iter().find(|kind| kind.name() == line.sensor) {
+                match line.kind() {
                     Some(kind) => each(self.sample(kind, &line)),
                     None => counts.foreign(&line.sensor),
                 }
@@ -89,17 +108,27 @@ impl Reader {
     }
 
     fn sample(&self, kind: SensorKind, line: &Line<'_>) -> Sample {
-        let value = DVec3::new(line.x, line.y, line.z);
-        let value = value.is_finite().then(|| self.axes.body_in(value));
+        let value = match kind {
+            SensorKind::Baro => line.pa.map(|pressure| DVec3::new(pressure, 0.0, 0.0)),
+            SensorKind::Gps => None,
+            _ => line.x.zip(line.y).zip(line.z).map(|((x, y), z)| DVec3::new(x, y, z)),
+        };
+        let value = value.filter(|value| value.is_finite()).map(|value| self.axes.body_in(value));
         Sample { kind, source: self.source, t: Some(SimTime(line.t_ns)), value }
     }
 }
 
-/// `t_ns,sensor,x,y,z`, and columns after those are not read.
+/// `t_ns,sensor,x,y,z`, and columns after those are not read; of a barometer the pressure alone.
 fn csv(line: &str) -> Option<Line<'_>> {
     let mut cells = line.split(',').map(str::trim);
     let t_ns = cells.next()?.parse().ok()?;
     let sensor = Cow::Borrowed(cells.next()?);
     let mut number = || cells.next()?.parse::<f64>().ok();
-    Some(Line { t_ns, sensor, x: number()?, y: number()?, z: number()? })
+    let mut line = Line { t_ns, sensor, x: None, y: None, z: None, pa: None };
+    if line.kind() == Some(SensorKind::Baro) {
+        line.pa = number();
+    } else {
+        (line.x, line.y, line.z) = (number(), number(), number());
+    }
+    Some(line).filter(Line::is_whole)
 }

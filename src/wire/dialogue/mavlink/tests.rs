@@ -555,6 +555,23 @@ fn a_ground_station_sees_every_message_but_the_simulators() {
     assert_eq!(dialogue.peer().system, Some(1), "our own heartbeat, looped back, is nobody's");
 }
 
+#[test]
+fn noise_that_looks_like_a_long_packet_does_not_hide_what_follows() {
+    let mut dialogue = Mavlink::new(None);
+    let noise = [0xfd, 0xff, 0, 0];
+    assert_eq!(hear(&mut dialogue, &[&noise[..], &from(6, 1, &beat(12, 0))].concat(), 0), []);
+    let mut after = Vec::new();
+    (0..=11).for_each(|k| dialogue.tick(k * STEP, &mut |said| after.push(Word::of(&said))));
+    assert_eq!(dialogue.peer().system, Some(6), "a tenth of a second later");
+    assert_eq!(after[0], Word::Pass(from(6, 1, &beat(12, 0))));
+    assert_eq!(dialogue.damaged(), 1, "the noise");
+    // Packets that come in two pieces with less than that between them are whole.
+    let bytes = from(6, 1, &actuators(1));
+    assert_eq!(hear(&mut dialogue, &bytes[..9], NANOS), []);
+    (0..=9).for_each(|k| dialogue.tick(NANOS + k * STEP, &mut |_| {}));
+    assert_eq!(hear(&mut dialogue, &bytes[9..], NANOS + 10 * STEP), [Word::Took]);
+}
+
 /// Whole messages of every kind that is acted on, and bytes that are none.
 fn any_stream() -> impl Strategy<Value = Vec<u8>> {
     let kinds = prop_oneof![

@@ -1,0 +1,153 @@
+//! Attitude filters of other makes behind one trait: what a dataset's readings are worth to each.
+//!
+//! Each has a file that brings its axes, units and start to ours: vectors in the body's axes (Forward-Right-Down),
+//! attitude from there to North-East-Down. All start from the same first readings, take a reading when it is due, and
+//! run with the defaults of their crates.
+
+mod complementary;
+mod fusion;
+mod held;
+mod vqf;
+
+use crate::geometry::{Attitude, Body, Rotation, Vector, exp};
+use crate::time::SimTime;
+use glam::{DMat3, DQuat, DVec3};
+
+/// A filter that is told of each reading as it comes; several of one instant in the order gyro, accelerometer,
+/// magnetometer.
+trait Filter {
+    /// Angular rate, rad/s, `dt` seconds after the one before (0 for the first).
+    fn gyro(&mut self, dt: f64, rate: Vector<Body>);
+    /// Specific force, m/s².
+    fn accel(&mut self, force: Vector<Body>);
+    /// Magnetic field, µT.
+    fn mag(&mut self, field: Vector<Body>);
+    /// The attitude from magnetic north; of unit length.
+    fn attitude(&self) -> Attitude;
+}
+
+/// What a filter is made for.
+struct Setup {
+    /// The nominal interval of the gyro, s.
+    gyro_s: f64,
+    /// Of the accelerometer.
+    accel_s: f64,
+    /// Of the magnetometer.
+    mag_s: f64,
+    /// Whether there is a magnetometer to go by.
+    has_mag: bool,
+    /// The attitude that the first readings show, from magnetic north, or from where it starts without a magnetometer.
+    start: Attitude,
+}
+
+/// A kind of filter.
+pub struct FilterKind {
+    /// What users call it.
+    pub name: &'static str,
+    /// One line of help.
+    pub about: &'static str,
+    build: fn(&Setup) -> Box<dyn Filter>,
+}
+
+/// Every filter.
+pub static FILTERS: [&FilterKind; 4] =
+    [&vqf::KIND, &fusion::KIND, &complementary::MADGWICK, &complementary::MAHONY];
+
+/// After a filter's name: without the magnetometer.
+pub const SIX: &str = "-6d";
+
+/// The filter of a name such as `vqf` or `vqf-6d`, and whether it is to use the magnetometer.
+pub fn from_name(name: &str) -> Option<(&'static FilterKind, bool)> {
+    let (stem, with_mag) = match name.strip_suffix(SIX) {
+        Some(stem) => (stem, false),
+        None => (name, true),
+    };
+    FILTERS.into_iter().find(|kind| kind.name == stem).map(|kind| (kind, with_mag))
+}
+
+/// One sensor's readings in order of time; none where there is no such sensor.
+pub type Column = Vec<(SimTime, Vector<Body>)>;
+
+/// The readings of a dataset.
+#[derive(Clone, Debug, Default)]
+pub struct Readings {
+    /// rad/s.
+    pub gyro: Column,
+    /// m/s².
+    pub accel: Column,
+    /// µT.
+    pub mag: Column,
+}
+
+/// Runs a filter over readings: the attitude after each instant at which the gyro was read, from true north if the
+/// magnetometer is used (`declination`, rad, positive where the field points east of it), else from where it starts.
+pub fn run(
+    kind: &FilterKind,
+    readings: &Readings,
+    with_mag: bool,
+    declination: f64,
+) -> Vec<(SimTime, Attitude)> {
+    let Readings { gyro, accel, mag } = readings;
+    let mag: &[_] = if with_mag { mag } else { &[] };
+    let (Some((_, force)), Some(&(first, _))) = (accel.first(), gyro.first()) else { return Vec::new() };
+    let setup = Setup {
+        gyro_s: period(gyro),
+        accel_s: period(accel),
+        mag_s: period(mag),
+        has_mag: !mag.is_empty(),
+        start: start(*force, mag.first().map(|(_, field)| *field)),
+    };
+    let north = if mag.is_empty() { DQuat::IDENTITY } else { exp(DVec3::Z * declination) };
+    let mut filter = (kind.build)(&setup);
+    let (mut last, mut next_accel, mut next_mag) = (first, 0, 0);
+    let mut attitudes = Vec::with_capacity(gyro.len());
+    for (i, &(t, rate)) in gyro.iter().enumerate() {
+        filter.gyro((t - last).seconds(), rate);
+        last = t;
+        let end = gyro.get(i + 1).map_or(SimTime(t.0 + 1), |(next, _)| *next);
+        let at_once = |next: &mut usize, from: &[(SimTime, Vector<Body>)], end: SimTime| {
+            let found = from.get(*next).filter(|(t, _)| *t < end).map(|(_, v)| *v);
+            *next += usize::from(found.is_some());
+            found
+        };
+        // What is due with the gyro counts for this attitude, what comes before its next reading for the next.
+        for until in [SimTime(t.0 + 1), end] {
+            while let Some(force) = at_once(&mut next_accel, accel, until) {
+                filter.accel(force);
+            }
+            while let Some(field) = at_once(&mut next_mag, mag, until) {
+                filter.mag(field);
+            }
+            if attitudes.len() == i {
+                attitudes.push((t, Attitude::from_quat(north * filter.attitude().q)));
+            }
+        }
+    }
+    attitudes
+}
+
+/// The nominal interval: the median.
+fn period(readings: &[(SimTime, Vector<Body>)]) -> f64 {
+    let mut steps: Vec<i64> = readings.windows(2).map(|pair| (pair[1].0 - pair[0].0).0).collect();
+    steps.sort_unstable();
+    steps.get(steps.len() / 2).map_or(0.01, |&ns| ns as f64 * 1e-9)
+}
+
+/// The attitude at rest that specific force and field show (TRIAD; H. Black, AIAA Journal 2(7), 1964); without a
+/// field, with no heading.
+fn start(force: Vector<Body>, field: Option<Vector<Body>>) -> Attitude {
+    let down = -force.v.normalize_or(-DVec3::Z);
+    let forward = field.map_or(DVec3::X, |field| field.v);
+    let east = down.cross(forward).normalize_or(down.any_orthonormal_vector());
+    // Rows are the nav axes in the body's; columns of the transpose.
+    let body_from_nav = DMat3::from_cols(east.cross(down), east, down);
+    Rotation::from_quat(DQuat::from_mat3(&body_from_nav.transpose()).normalize())
+}
+
+/// A half turn about x: Forward-Left-Up to Forward-Right-Down, North-West-Up to North-East-Down, and back.
+fn flip(v: DVec3) -> [f64; 3] {
+    [v.x, -v.y, -v.z]
+}
+
+#[cfg(test)]
+mod tests;

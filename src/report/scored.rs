@@ -1,0 +1,37 @@
+//! Estimates against the truth, side by side.
+
+use crate::score::Figures;
+use serde::Serialize;
+
+/// What `score` found, one JSON object.
+#[derive(Clone, Debug, Serialize)]
+pub struct ScoreReport {
+    /// The program's version.
+    pub version: String,
+    /// Whether every limit held.
+    pub ok: bool,
+    /// What did not hold: `estimates.vqf.rms_deg = 1.3 >= 1`.
+    pub failed: Vec<String>,
+    /// What the estimates were set against.
+    pub truth: String,
+    /// What was taken out of each: `none`, or its constant `heading`.
+    pub align: String,
+    /// For how long from the truth's start on nothing was judged, s.
+    pub settle_s: f64,
+    /// Each estimate, in the order given.
+    pub estimates: Vec<Scored>,
+}
+
+/// One estimate.
+#[derive(Clone, Debug, Serialize)]
+pub struct Scored {
+    /// The filter's name, or that of the file without its ending.
+    pub name: String,
+    /// The filter, or the file's path.
+    pub source: String,
+    /// How far off it is.
+    #[serde(flatten)]
+    pub figures: Figures,
+    /// What the user should know of how it was read.
+    pub remarks: Vec<String>,
+}

@@ -1,0 +1,83 @@
+//! PX4's ULog: the topic `vehicle_attitude`, quaternion w first, body (FRD) to nav (NED), time in µs since boot.
+//!
+//! Format: docs.px4.io, "ULog File Format". The first instance of the topic is read; its time is that of the sample the
+//! estimate rests on (`timestamp_sample`) where the log has it, else that of publication.
+
+use super::{FileError, Recorded, no_rotation, timed};
+use crate::geometry::{Attitude, Axes};
+use glam::DQuat;
+use px4_ulog::stream_parser::model::{Completeness, FlattenedFormat};
+use px4_ulog::stream_parser::{DataMessage, Message, SimpleCallbackResult, read_file_with_simple_callback};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// How every ULog begins.
+pub(super) const MAGIC: &[u8] = b"ULog\x01\x12\x35";
+
+const TOPIC: &str = "vehicle_attitude";
+
+pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
+    let content = |why: String| FileError::Content(format!("{}: {why}", path.display()));
+    let name = path.to_str().ok_or_else(|| content("its name is no UTF-8; rename it".into()))?;
+    let mut topics = BTreeSet::new();
+    let mut rows = Vec::new();
+    let mut problem = None;
+    let ended = read_file_with_simple_callback(name, &mut |message| {
+        let Message::Data(data) = message else { return SimpleCallbackResult::KeepReading };
+        let topic = data.flattened_format.message_name();
+        if topic != TOPIC {
+            if !topics.contains(topic) {
+                topics.insert(topic.to_string());
+            }
+        } else if data.multi_id.value() == 0 {
+            match row(data) {
+                Ok((t, q)) => rows.push((t, q)),
+                Err(why) => problem = problem.take().or(Some(why)),
+            }
+        }
+        SimpleCallbackResult::KeepReading
+    });
+    let ended = ended.map_err(|source| FileError::Io { path: path.to_path_buf(), source })?;
+    if let Some(why) = problem {
+        return Err(content(format!("{TOPIC}: {why}")));
+    }
+    if rows.is_empty() {
+        let there = topics.into_iter().collect::<Vec<_>>().join(", ");
+        let there = if there.is_empty() { "none".into() } else { there };
+        return Err(content(format!("has no topic {TOPIC} with an attitude in it; its topics are: {there}")));
+    }
+    let remarks = match ended {
+        Completeness::Complete => Vec::new(),
+        _ => vec![format!(
+            "the log breaks off in the middle: the {} attitudes before that are read",
+            rows.len()
+        )],
+    };
+    let estimates = rows.into_iter().map(|(t, q)| timed(t, Attitude::from_quat(q.normalize()))).collect();
+    Ok(Recorded { estimates, axes: Axes::NedFrd, others: Vec::new(), remarks })
+}
+
+/// Time in ns and attitude of one record.
+fn row(data: &DataMessage<'_>) -> Result<(i64, DQuat), String> {
+    let format = data.flattened_format;
+    let bytes = data.data;
+    let [w, x, y, z] = [0, 1, 2, 3].map(|i| float(format, bytes, &format!("q[{i}]")));
+    let q = DQuat::from_xyzw(x?, y?, z?, w?);
+    let sampled = micros(format, bytes, "timestamp_sample").filter(|&t| t > 0);
+    let t =
+        sampled.or_else(|| micros(format, bytes, "timestamp")).ok_or("its records have no `timestamp`")?;
+    let ns = i64::try_from(t).ok().and_then(|t| t.checked_mul(1000));
+    let ns = ns.ok_or_else(|| format!("a timestamp of {t} µs is no time since boot"))?;
+    no_rotation(q).map_or(Ok((ns, q)), |why| Err(format!("at {t} µs: {why}")))
+}
+
+fn float(format: &FlattenedFormat, bytes: &[u8], name: &str) -> Result<f64, String> {
+    let parser = format.get_field_parser::<f32>(name).map_err(|_| format!("has no `float {name}`"))?;
+    let is_whole = bytes.len() >= usize::from(parser.offset()) + 4;
+    if is_whole { Ok(f64::from(parser.parse(bytes))) } else { Err("a record is too short".into()) }
+}
+
+fn micros(format: &FlattenedFormat, bytes: &[u8], name: &str) -> Option<u64> {
+    let parser = format.get_field_parser::<u64>(name).ok()?;
+    (bytes.len() >= usize::from(parser.offset()) + 8).then(|| parser.parse(bytes))
+}
