@@ -164,10 +164,10 @@ fn in_real_time_inav_at_rest_is_told_level() {
     let case = Case::of(Make::Inav);
     let sets: Vec<String> = case.sets.iter().copied().chain(["duration=2 s"]).map(str::to_owned).collect();
     let plan = Arc::new(Plan::load("level-then-turn", &sets).unwrap());
-    // Twenty seconds of rest in two.
+    // Twenty seconds of rest in two. At rest nothing depends on when a message comes; what is told is in steps of 0.1°.
     let (outcome, record, _) = play(case, &plan, Speed::Times(10.0));
     let told = outcome.attitude.expect("answers");
     eprintln!("inav ten times as fast: {told:?}; {}", record.counts);
-    assert!(told.inclination_rms_deg < BOUND_DEG && told.heading_rms_deg < 1.0, "{told:?}");
+    assert!(told.inclination_rms_deg < 0.3 && told.heading_rms_deg < 1.0, "{told:?}");
     assert!(outcome.rest_s >= 20.0 && record.counts.samples > 0);
 }
