@@ -81,9 +81,9 @@ mod tests {
     use crate::quaternion::{angle_between, from_euler};
 
     /// How far off it is, in deg, after so many seconds at rest in some attitude with a gyro bias.
-    fn error_after(seconds: f64, gain: f64, bias: f64) -> f64 {
+    fn error_after(seconds: f64, gain: f64, k_i: f64, bias: f64) -> f64 {
         let truth = from_euler(0.4, -0.3, 2.0);
-        let mut filter = Mahony { gain, ..Mahony::inav() };
+        let mut filter = Mahony { gain, k_i, ..Mahony::inav() };
         let (force, field) = (rotate(conj(truth), [0.0, 0.0, -G]), rotate(conj(truth), [1.0, 0.0, 1.7]));
         for _ in 0..(seconds * 1000.0) as u32 {
             filter.step(0.001, [bias, -bias, bias], force, field);
@@ -93,15 +93,15 @@ mod tests {
 
     #[test]
     fn it_turns_to_the_vertical_and_to_north_at_the_rate_of_its_gains() {
-        assert!(error_after(20.0, 10.0, 0.0) < 0.01);
-        let slow = error_after(20.0, 1.0, 0.0);
+        assert!(error_after(20.0, 10.0, 0.0, 0.0) < 0.01);
+        let slow = error_after(20.0, 1.0, 0.0, 0.0);
         assert!((0.5..20.0).contains(&slow), "{slow}: four time constants of 5 s, and more from far off");
     }
 
     #[test]
     fn a_bias_of_the_gyro_is_learnt() {
         let proportional = (0.01_f64 * 2_f64.sqrt() / 0.2).to_degrees();
-        let learnt = error_after(400.0, 1.0, 0.01);
+        let learnt = error_after(400.0, 1.0, 0.005, 0.01);
         assert!(learnt < 0.02 * proportional, "{learnt} of {proportional}");
     }
 
