@@ -10,6 +10,8 @@ use super::follow::BOUND_DEG;
 use super::memory::{CASES, Case, converse, exact_deg, judge, own, settings};
 
 type Stream = Vec<(u64, Vec<u8>)>;
+type Lie = fn(Stream) -> Stream;
+type Wrong = fn(&mut Vectors);
 
 /// The AHRS packets of a stream with an attitude a quarter turn off.
 fn lying_vectornav(stream: Stream) -> Stream {
@@ -59,7 +61,7 @@ const FLAGS: u8 =
 
 #[test]
 fn a_false_attitude_beside_the_samples_changes_no_estimate() {
-    let lies: [(Make, fn(Stream) -> Stream); 4] = [
+    let lies: [(Make, Lie); 4] = [
         (Make::Ardupilot, lying_vectornav),
         (Make::Px4, lying_mavlink),
         (Make::Px4Sitl, lying_mavlink),
@@ -97,7 +99,7 @@ fn inav_believes_the_simulators_attitude_if_it_is_told_to() {
 }
 
 /// One thing wrong with the readings of every packet.
-const WRONG: [(&str, fn(&mut Vectors)); 7] = [
+const WRONG: [(&str, Wrong); 7] = [
     ("x and y of all swapped", |vectors| vectors.iter_mut().for_each(|v| v.swap(0, 1))),
     ("x and z of the gyro swapped", |[gyro, ..]| gyro.swap(0, 2)),
     ("gyro z the other way round", |[gyro, ..]| gyro[2] = -gyro[2]),
