@@ -2,7 +2,8 @@
 //! firmware would have it.
 //!
 //! [`driver`] turns a stream into readings in body axes, [`ahrs`] turns readings into an
-//! attitude, and [`board`] is the main loop around a UART. Body axes are forward-right-down
+//! attitude, and [`board`] is the main loop around a UART. [`standin`] has whole flight controllers,
+//! as far as their links show. Body axes are forward-right-down
 //! (FRD), nav is north-east-down (NED); units are rad/s, m/s² and µT. Nothing here knows the
 //! emulator: only the packets on the wire.
 
@@ -11,6 +12,7 @@ pub mod board;
 pub mod driver;
 pub mod quaternion;
 mod sample;
+pub mod standin;
 
 pub use board::{Board, Options, Report, Step};
 pub use driver::{Counts, Driver, Protocol};

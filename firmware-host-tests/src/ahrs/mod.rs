@@ -1,12 +1,14 @@
 //! Attitude estimators behind one interface.
 
 mod fusion;
+mod mahony;
 mod vqf;
 
 use std::fmt;
 use std::str::FromStr;
 
 pub use fusion::Fusion;
+pub use mahony::Mahony;
 pub use vqf::Vqf;
 
 use crate::quaternion;

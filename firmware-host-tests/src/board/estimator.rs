@@ -13,7 +13,7 @@ const HELD_US: u64 = 1_000_000;
 ///
 /// A firmware knows the rates that it has set; this one measures them, and puts the samples that
 /// it held back through the estimator once it can be built, so none is lost.
-pub(super) struct Estimator {
+pub(crate) struct Estimator {
     kind: Kind,
     declination_rad: f64,
     held: Vec<Sample>,
@@ -27,12 +27,12 @@ struct Running {
 }
 
 impl Estimator {
-    pub(super) fn new(kind: Kind, declination_rad: f64) -> Self {
+    pub(crate) fn new(kind: Kind, declination_rad: f64) -> Self {
         Self { kind, declination_rad, held: Vec::new(), running: None }
     }
 
     /// Takes a sample; adds an attitude to `history` after each gyro reading.
-    pub(super) fn take(&mut self, sample: &Sample, history: &mut Vec<(u64, [f64; 4])>) {
+    pub(crate) fn take(&mut self, sample: &Sample, history: &mut Vec<(u64, [f64; 4])>) {
         if let Some(running) = &mut self.running {
             running.take(sample, history);
             return;
@@ -44,7 +44,7 @@ impl Estimator {
     }
 
     /// Starts with what is known by now, and puts the held samples through.
-    pub(super) fn settle(&mut self, history: &mut Vec<(u64, [f64; 4])>) {
+    pub(crate) fn settle(&mut self, history: &mut Vec<(u64, [f64; 4])>) {
         if self.running.is_some() || self.held.is_empty() {
             return;
         }
@@ -57,7 +57,7 @@ impl Estimator {
     }
 
     /// The attitude by now, once it has started.
-    pub(super) fn attitude(&self) -> Option<[f64; 4]> {
+    pub(crate) fn attitude(&self) -> Option<[f64; 4]> {
         self.running.as_ref().map(|running| running.ahrs.attitude())
     }
 }

@@ -15,7 +15,7 @@ use crate::ahrs::Kind;
 use crate::driver::{Counts, Driver, Protocol};
 use crate::sample::Sample;
 use answer::Answers;
-use estimator::Estimator;
+pub(crate) use estimator::Estimator;
 
 /// Bytes asked of the link at once.
 const READ_LEN: usize = 4096;

@@ -1,6 +1,7 @@
 //! The board's end of a link.
 
 use std::io::{self, Read};
+use std::net::TcpStream;
 use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::time::Duration;
@@ -36,7 +37,7 @@ pub trait Port {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
 }
 
-/// A serial port, a pty or a file, by its path.
+/// A serial port, a pty or a file, by its path; or a connection.
 #[derive(Debug)]
 pub struct Device {
     fd: OwnedFd,
@@ -69,6 +70,14 @@ impl Device {
     }
 }
 
+impl From<TcpStream> for Device {
+    /// A connection; should it refuse not to wait, reading still waits for no longer than it is told to.
+    fn from(stream: TcpStream) -> Self {
+        let _ = stream.set_nodelay(true).and_then(|()| stream.set_nonblocking(true));
+        Self { fd: stream.into() }
+    }
+}
+
 impl Port for Device {
     fn read(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<Arrival> {
         let timeout = Timespec {
@@ -82,7 +91,7 @@ impl Port for Device {
             Err(error) => return Err(error.into()),
         }
         match rustix::io::read(&self.fd, bytes) {
-            Ok(0) | Err(Errno::IO) => Ok(Arrival::Closed),
+            Ok(0) | Err(Errno::IO | Errno::CONNRESET) => Ok(Arrival::Closed),
             Ok(len) => Ok(Arrival::Bytes(len)),
             Err(Errno::AGAIN | Errno::INTR) => Ok(Arrival::Idle),
             Err(error) => Err(error.into()),
@@ -94,7 +103,7 @@ impl Port for Device {
             Ok(len) => Ok(len),
             Err(Errno::AGAIN | Errno::INTR) => Ok(0),
             // The other side is gone, or the device is read-only: answers go nowhere.
-            Err(Errno::IO | Errno::PIPE | Errno::BADF) => Ok(bytes.len()),
+            Err(Errno::IO | Errno::PIPE | Errno::BADF | Errno::CONNRESET) => Ok(bytes.len()),
             Err(error) => Err(error.into()),
         }
     }

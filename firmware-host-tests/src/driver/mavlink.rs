@@ -72,18 +72,23 @@ impl State {
 
 /// The new readings of a message; `None` if it has none, or is of another set of sensors.
 fn read(message: &hil_sensor::Repr) -> Option<Sample> {
+    let sample = readings(message);
+    let any = sample.gyro.is_some() || sample.accel.is_some() || sample.mag.is_some();
+    (any && message.id == 0).then_some(sample)
+}
+
+/// What is new in a message of whichever set of sensors.
+pub(crate) fn readings(message: &hil_sensor::Repr) -> Sample {
     let vector = |bits: u32, values: [f32; 3], scale: f64| {
         let new = message.fields_updated & bits == bits;
         new.then(|| values.map(|value| f64::from(value) * scale))
     };
-    let sample = Sample {
+    Sample {
         t_us: message.time_usec,
         gyro: vector(hil_sensor::GYRO, message.gyro, 1.0),
         accel: vector(hil_sensor::ACCEL, message.accel, 1.0),
         mag: vector(hil_sensor::MAG, message.mag, UT_PER_GAUSS),
-    };
-    let any = sample.gyro.is_some() || sample.accel.is_some() || sample.mag.is_some();
-    (any && message.id == 0).then_some(sample)
+    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub use mavlink::MavlinkDriver;
+pub(crate) use mavlink::readings;
 pub use mpu::{Mount, MpuDriver};
 
 use crate::sample::Sample;

@@ -12,4 +12,5 @@ mod play;
 mod program;
 mod pymavlink;
 mod scenes;
+mod standins;
 mod wrong_drivers;

@@ -97,3 +97,38 @@ fn a_board_that_does_not_exist_is_exit_code_2() {
     let said = assert_code(&run(&["--", "/no/such/board", "{}"]), 2);
     assert!(said.contains("`/no/such/board` could not be started"), "{said}");
 }
+
+/// A stand-in for a flight controller.
+const STANDIN: &str = env!("CARGO_BIN_EXE_standin");
+
+#[test]
+fn px4_on_a_slow_link_is_told_of_with_the_parameter_to_change_and_is_exit_code_2() {
+    let arguments =
+        ["run", "--to", "px4@pty", "--wait", "12s", "--", STANDIN, "px4", "{}", "--param", "MAV_0_RATE=1200"];
+    let output = Command::new(&*RATETABLE).args(arguments).output().expect("the program starts");
+    let said = assert_code(&output, 2);
+    assert!(said.contains("MAV_0_RATE is 1200 B/s") && said.contains("set MAV_0_RATE to 0"), "{said}");
+    assert!(said.contains("the controller beats but does not answer samples"), "{said}");
+}
+
+#[test]
+fn a_stand_in_reads_all_of_a_stream() {
+    let arguments = [
+        "run",
+        "still",
+        "--for",
+        "2s",
+        "--to",
+        "mip@pty",
+        "--speed",
+        "max",
+        "--",
+        STANDIN,
+        "ardupilot-mip",
+        "{}",
+    ];
+    let output = Command::new(&*RATETABLE).args(arguments).output().expect("the program starts");
+    let said = assert_code(&output, 0);
+    // Two seconds at 1 kHz, and the vehicle that has stopped.
+    assert!(said.contains("2001 packets, 0 damaged") && said.contains("samples: 2001 used"), "{said}");
+}

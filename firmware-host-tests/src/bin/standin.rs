@@ -1,0 +1,121 @@
+//! A stand-in for a flight controller as a program: behaves on its link as the firmware was measured to, and says at
+//! the end what came.
+//!
+//! `standin FIRMWARE PATH [--baud N] [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N]
+//! [--rate N] [--speed N]`; for `px4-sitl` PATH is `HOST:PORT`. Exits with 0 when the link closes, with 1 if it used
+//! no samples, with 2 if it could not run.
+
+use std::io;
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use ratetable_firmware_host_tests::board::{Device, Port};
+use ratetable_firmware_host_tests::quaternion::to_euler;
+use ratetable_firmware_host_tests::standin::{Clock, Make, Record, Settings, StandIn};
+
+const USAGE: &str = "usage: standin px4|px4-sitl|ardupilot|ardupilot-mip|inav PATH (px4-sitl: HOST:PORT) [--baud N] \
+                     [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N] [--rate HZ] \
+                     [--speed TIMES]";
+
+/// How long PX4 as a program tries to connect.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// What was asked for.
+struct Arguments {
+    make: Make,
+    path: String,
+    baud: Option<u32>,
+    speed: f64,
+    settings: Settings,
+}
+
+fn main() -> ExitCode {
+    let arguments = match parse(std::env::args().skip(1)) {
+        Ok(arguments) => arguments,
+        Err(why) => {
+            eprintln!("standin: {why}\n{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match run(&arguments) {
+        Ok(record) => {
+            eprintln!("{}", summary(arguments.make, &record));
+            ExitCode::from(u8::from(record.counts.samples == 0))
+        }
+        Err(error) => {
+            eprintln!("standin: {}: {error}", arguments.path);
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> io::Result<Record> {
+    let port: Box<dyn Port + Send> = match arguments.make {
+        Make::Px4Sitl => Box::new(Device::from(connect(&arguments.path)?)),
+        _ => Box::new(Device::open(Path::new(&arguments.path), arguments.baud)?),
+    };
+    let firmware = arguments.make.firmware(&arguments.settings);
+    let mut standin = StandIn::new(port, firmware, Clock::wall(arguments.speed));
+    standin.run(&AtomicBool::new(false))?;
+    Ok(standin.record().clone())
+}
+
+/// Tries until the simulator is there, as PX4 does.
+fn connect(address: &str) -> io::Result<TcpStream> {
+    let since = Instant::now();
+    loop {
+        match TcpStream::connect(address) {
+            Err(error) if error.kind() == io::ErrorKind::ConnectionRefused && since.elapsed() < PATIENCE => {
+                std::thread::sleep(Duration::from_millis(100));
+            }
+            other => return other,
+        }
+    }
+}
+
+fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
+    let (mut places, mut baud, mut speed) = (Vec::new(), None, 1.0);
+    let mut settings = Settings::default();
+    while let Some(word) = words.next() {
+        if !word.starts_with('-') {
+            places.push(word);
+            continue;
+        }
+        let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
+        match word.as_str() {
+            "--baud" => baud = Some(number(&word, &value)?),
+            "--speed" => speed = number(&word, &value)?,
+            "--ahrs" => settings.ahrs = value.parse()?,
+            "--declination-deg" => settings.declination_rad = number::<f64>(&word, &value)?.to_radians(),
+            "--unanswered" => settings.unanswered = number(&word, &value)?,
+            "--rate" => settings.rate_hz = number(&word, &value)?,
+            "--param" => {
+                let (name, of) =
+                    value.split_once('=').ok_or_else(|| format!("{word}: `{value}` is no NAME=N"))?;
+                settings.parameters.insert(name.to_owned(), number(&word, of)?);
+            }
+            _ => return Err(format!("unknown option {word}")),
+        }
+    }
+    match <[String; 2]>::try_from(places) {
+        Ok([make, path]) => Ok(Arguments { make: make.parse()?, path, baud, speed, settings }),
+        Err(_) => Err("a firmware and a path".into()),
+    }
+}
+
+fn number<T: std::str::FromStr>(word: &str, value: &str) -> Result<T, String> {
+    value.parse().map_err(|_| format!("{word}: `{value}` is not a number that fits"))
+}
+
+/// The counts and the last attitude, in words.
+fn summary(make: Make, record: &Record) -> String {
+    let mut text = format!("standin {make}: {}", record.counts);
+    if let Some(newest) = record.history.last() {
+        let [roll, pitch, yaw] = to_euler(newest.attitude).map(f64::to_degrees);
+        text += &format!("\nstandin {make}: roll {roll:.2} deg, pitch {pitch:.2} deg, yaw {yaw:.2} deg");
+    }
+    text
+}

@@ -1,0 +1,104 @@
+//! Which firmware, and what it is told before it starts.
+
+use std::fmt;
+use std::str::FromStr;
+
+use ratetable_protocols::{mavlink, mip, msp, vectornav};
+
+use super::{Ardupilot, Firmware, Framing, Inav, Mip, Parameters, Px4, Px4Sitl};
+use crate::ahrs::Kind;
+
+/// A firmware on a kind of link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Make {
+    /// PX4 on its board, in HITL.
+    Px4,
+    /// PX4 as a program, in lockstep.
+    Px4Sitl,
+    /// ArduPilot with a VN-100.
+    Ardupilot,
+    /// ArduPilot with a MicroStrain unit.
+    ArdupilotMip,
+    /// INAV.
+    Inav,
+}
+
+/// A firmware's parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Its estimator; INAV has one of its own.
+    pub ahrs: Kind,
+    /// Declination of the field at its place, rad, positive east; INAV takes it as 0.
+    pub declination_rad: f64,
+    /// PX4: whole-number parameters that differ from [`Px4::parameters`].
+    pub parameters: Parameters,
+    /// PX4 as a program: samples that it does not answer while it boots.
+    pub unanswered: u64,
+    /// ArduPilot: IMU packets a second that it asks a VN-100 for.
+    pub rate_hz: u32,
+}
+
+impl Default for Settings {
+    /// VQF, magnetic north, 100 unanswered samples, 100 Hz.
+    fn default() -> Self {
+        Self {
+            ahrs: Kind::default(),
+            declination_rad: 0.0,
+            parameters: Parameters::new(),
+            unanswered: 100,
+            rate_hz: 100,
+        }
+    }
+}
+
+impl Make {
+    /// Every make.
+    pub const ALL: [Self; 5] = [Self::Px4, Self::Px4Sitl, Self::Ardupilot, Self::ArdupilotMip, Self::Inav];
+
+    /// As it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Px4 => "px4",
+            Self::Px4Sitl => "px4-sitl",
+            Self::Ardupilot => "ardupilot",
+            Self::ArdupilotMip => "ardupilot-mip",
+            Self::Inav => "inav",
+        }
+    }
+
+    /// One that has just booted.
+    pub fn firmware(self, settings: &Settings) -> Box<dyn Firmware + Send> {
+        match self {
+            Self::Px4 => Box::new(Px4::new(settings)),
+            Self::Px4Sitl => Box::new(Px4Sitl::new(settings)),
+            Self::Ardupilot => Box::new(Ardupilot::new(settings)),
+            Self::ArdupilotMip => Box::new(Mip::new(settings)),
+            Self::Inav => Box::new(Inav::new(settings)),
+        }
+    }
+
+    /// What its packets of samples look like.
+    pub fn framing(self) -> Framing {
+        match self {
+            Self::Px4 | Self::Px4Sitl => Framing::Mavlink(Box::new(mavlink::Decoder::new())),
+            Self::Ardupilot => Framing::Vectornav(Box::new(vectornav::Decoder::new())),
+            Self::ArdupilotMip => Framing::Mip(Box::new(mip::Decoder::new())),
+            Self::Inav => Framing::Msp(Box::new(msp::Decoder::new())),
+        }
+    }
+}
+
+impl FromStr for Make {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|make| make.name() == name);
+        found.ok_or_else(|| format!("no stand-in `{name}`: {}", Self::ALL.map(Self::name).join(", ")))
+    }
+}
+
+impl fmt::Display for Make {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

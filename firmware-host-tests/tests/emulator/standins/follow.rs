@@ -1,0 +1,104 @@
+//! In memory: every stand-in follows the truth, and the emulator reads its answers right.
+
+use ratetable_firmware_host_tests::standin::{Make, Settings};
+
+use super::memory::{CASES, Case, converse, converse_well, exact_deg, judge, own, settings};
+
+/// What every stand-in's own attitude has to keep to, RMS over the scene, deg.
+pub const BOUND_DEG: f64 = 0.2;
+
+#[test]
+fn every_stand_in_follows_the_truth_and_its_answers_are_read_right() {
+    for case in &CASES {
+        let (plan, told) = converse_well(case);
+        let what = case.make;
+        assert!(told.ready, "{what}: {:?}", told.notices);
+        assert_eq!(told.notices, Vec::<String>::new(), "{what}");
+        let counts = told.record.counts;
+        let whole = (counts.damaged, counts.lost, counts.overflowed, counts.stale, counts.timeouts);
+        assert_eq!(whole, (0, 0, 0, 0, 0), "{what}: {counts}");
+        let figures = judge(&plan, &own(&told.record, told.scene_us));
+        let (rms, max) = exact_deg(&plan, &told.record, told.scene_us);
+        eprintln!(
+            "{what}: own {:.4} deg RMS, {:.3} at most (inclination {:.4}, heading {:.4}), delay {:?} ms; {rms:.4} and \
+             {max:.3} at exact times",
+            figures.rms_deg,
+            figures.max_deg,
+            figures.inclination_rms_deg,
+            figures.heading_rms_deg,
+            figures.delay_ms
+        );
+        assert!(figures.rms_deg < BOUND_DEG, "{what}: {figures:?}");
+        // INAV's estimate is of the sample before, and later by up to its task's period.
+        assert!(rms < BOUND_DEG || case.make == Make::Inav, "{what}: {rms}");
+        if matches!(case.make, Make::Px4 | Make::Inav) {
+            let answers = judge(&plan, &told.answers);
+            eprintln!("{what}: as told {:.4} deg RMS, {} answers", answers.rms_deg, answers.samples);
+            assert!(answers.rms_deg < BOUND_DEG && answers.looks.is_none(), "{what}: {answers:?}");
+            let least = if case.make == Make::Px4 { 45 } else { 95 } * plan.duration.0 as u64 / 1_000_000_000;
+            assert!(answers.samples >= least, "{what}: {} answers", answers.samples);
+        }
+    }
+}
+
+#[test]
+fn px4_hears_only_a_fast_link_and_the_emulator_says_what_to_change() {
+    let case = Case { rest_s: 15, ..*Case::of(Make::Px4) };
+    let plan = ratetable::scene::Plan::load("level-then-turn", &["duration=1 s".to_owned()]).unwrap();
+    for (changed, named) in [
+        (("MAV_0_RATE", 1200), "MAV_0_RATE is 1200 B/s"),
+        (("SER_TEL1_BAUD", 57_600), "SER_TEL1_BAUD is 57600"),
+        (("SYS_HITL", 0), "SYS_HITL is 0"),
+    ] {
+        let parameters = [(changed.0.to_owned(), changed.1)].into();
+        let told = converse(&case, &plan, &Settings { parameters, ..settings(&plan) }, |stream, _| stream);
+        let counts = told.record.counts;
+        assert!(!told.ready && counts.samples == 0 && counts.refused > 3000, "{changed:?}: {counts}");
+        assert!(told.notices[0].starts_with(named), "{:?}", told.notices);
+        assert!(
+            told.notices.iter().any(|notice| notice.contains("beats but does not")),
+            "{:?}",
+            told.notices
+        );
+    }
+    for heard in [("MAV_0_RATE", 5001), ("MAV_0_RATE", 0), ("SER_TEL1_BAUD", 115_200)] {
+        let parameters = [(heard.0.to_owned(), heard.1)].into();
+        let told = converse(&case, &plan, &Settings { parameters, ..settings(&plan) }, |stream, _| stream);
+        assert!(told.ready && told.notices.is_empty(), "{heard:?}: {:?}", told.notices);
+    }
+}
+
+#[test]
+fn the_emulator_answers_what_it_is_asked() {
+    let (_, told) = converse_well(Case::of(Make::Px4));
+    let counts = told.record.counts;
+    assert!(counts.asked > 500, "ten comparisons of clocks a second");
+    assert!(counts.asked - counts.answers <= 1, "{counts}");
+    let (_, told) = converse_well(Case::of(Make::Ardupilot));
+    assert_eq!((told.record.counts.asked, told.record.counts.answers), (7, 7), "a handshake without resends");
+}
+
+#[test]
+fn ardupilot_gets_the_rate_it_asks_for_and_nothing_before_it_has_asked() {
+    for rate_hz in [50, 100, 200, 400] {
+        let case = Case::of(Make::Ardupilot);
+        let plan = ratetable::scene::Plan::load("still", &["duration=4 s".to_owned()]).unwrap();
+        let case = Case { rest_s: 1, ..*case };
+        let told = converse(&case, &plan, &Settings { rate_hz, ..settings(&plan) }, |stream, _| stream);
+        let counts = told.record.counts;
+        assert_eq!((counts.samples, counts.refused), (u64::from(rate_hz) * 5, 0), "{rate_hz} Hz: {counts}");
+        assert_eq!(counts.foreign, 250, "the unit's attitude 50 times a second, ignored");
+    }
+}
+
+#[test]
+fn lockstep_is_one_answer_to_each_sample_once_it_has_booted() {
+    for unanswered in [20, 100, 460] {
+        let case = Case::of(Make::Px4Sitl);
+        let plan = ratetable::scene::Plan::load("level-then-turn", &["duration=1 s".to_owned()]).unwrap();
+        let told = converse(case, &plan, &Settings { unanswered, ..settings(&plan) }, |stream, _| stream);
+        let counts = told.record.counts;
+        assert!(told.ready);
+        assert_eq!(counts.answered, counts.samples - unanswered);
+    }
+}

@@ -1,0 +1,173 @@
+//! The emulator's own session against stand-ins on ptys and loopback TCP, opened by path.
+
+use std::net::TcpStream;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use ratetable::scene::{Destination, Plan};
+use ratetable::session::{Event, Outcome, Speed};
+use ratetable::time::SimTime;
+use ratetable_firmware_host_tests::board::{Device, Port};
+use ratetable_firmware_host_tests::standin::{Clock, Make, Record, StandIn};
+
+use super::follow::BOUND_DEG;
+use super::memory::{CASES, Case, exact_deg, judge, own, settings};
+use crate::play::play_after;
+
+/// Opens what the emulator is on: a port by its path, or a connection.
+fn open(make: Make, place: &str) -> Box<dyn Port + Send> {
+    match make {
+        Make::Px4Sitl => {
+            let address = place.strip_prefix("tcpin:").unwrap_or(place);
+            Box::new(Device::from(TcpStream::connect(address).expect("a connection")))
+        }
+        _ => Box::new(Device::open(Path::new(place), None).expect("a port")),
+    }
+}
+
+/// Plays a plan to a case's stand-in; gives back what both sides say of it, and the emulator's notices.
+fn play(case: &Case, plan: &Arc<Plan>, speed: Speed) -> (Outcome, Record, Vec<String>) {
+    let rest = case.to.parse::<Destination>().expect("a destination").target.map(|target| target.rest);
+    let (make, period_us, settings) = (case.make, case.period_us, settings(plan));
+    let standin = move |place: &str| {
+        let clock = match speed {
+            Speed::Max => Clock::even(period_us, make.framing()),
+            Speed::Times(times) => Clock::wall(times),
+        };
+        let mut standin = StandIn::new(open(make, place), make.firmware(&settings), clock);
+        standin.run(&AtomicBool::new(false)).expect("a link");
+        // Faster than real time so is what it says, and the way back may be full.
+        assert!(speed == Speed::Max || standin.unsaid() == 0, "the emulator listens");
+        standin.record().clone()
+    };
+    let mut notices = Vec::new();
+    let (outcome, record) = play_after(rest, plan, case.to, speed, standin, |event| {
+        if let Event::Notice(notice) = event {
+            notices.push(notice.clone());
+        }
+    });
+    (outcome, record, notices)
+}
+
+/// Every sample that was made arrived and was used.
+fn check_counts(case: &Case, outcome: &Outcome, record: &Record) {
+    let counts = record.counts;
+    let whole =
+        (counts.damaged, counts.lost, counts.overflowed, counts.stale, counts.timeouts, counts.refused);
+    assert_eq!(whole, (0, 0, 0, 0, 0, 0), "{}: {counts}", case.make);
+    for sensor in &outcome.sensors {
+        assert_eq!((sensor.made, 0, 0), (sensor.sent, sensor.dropped, sensor.queued), "{}", sensor.name);
+    }
+}
+
+/// As fast as the stand-in reads, beside a link that delivers evenly: nothing depends on how busy the machine is.
+fn follows(make: Make) {
+    let case = Case::of(make);
+    let plan = case.plan();
+    let (outcome, record, notices) = play(case, &plan, Speed::Max);
+    check_counts(case, &outcome, &record);
+    let first_us = record.history.first().expect("estimates").t_us;
+    let scene_us = first_us + (outcome.rest_s * 1e6).round() as u64;
+    let figures = judge(&plan, &own(&record, scene_us));
+    let (rms, max) = exact_deg(&plan, &record, scene_us);
+    eprintln!(
+        "{make} on a link after {} s at rest: own {:.4} deg RMS, {rms:.4} and {max:.3} at exact times; told: {:?}; \
+         notices: {notices:?}",
+        outcome.rest_s, figures.rms_deg, outcome.attitude
+    );
+    assert!(figures.rms_deg < BOUND_DEG, "{make}: {figures:?}");
+    assert!(rms < BOUND_DEG || make == Make::Inav, "{make}: {rms}");
+    let target = case.to.parse::<Destination>().expect("a destination").target;
+    assert!(target.is_none_or(|target| outcome.rest_s >= target.rest.0 as f64 * 1e-9), "{make}");
+    // Its times are its own clock's, so that the emulator knows them however fast the stream was.
+    if make == Make::Px4 {
+        let told = outcome.attitude.expect("answers");
+        assert!(told.rms_deg < BOUND_DEG && told.looks.is_none(), "{make}: {told:?}");
+    }
+}
+
+#[test]
+fn px4_on_a_pty_follows() {
+    follows(Make::Px4);
+}
+
+#[test]
+fn px4_as_a_program_follows_in_lockstep_over_tcp() {
+    follows(Make::Px4Sitl);
+}
+
+#[test]
+fn ardupilot_on_a_pty_follows() {
+    follows(Make::Ardupilot);
+}
+
+#[test]
+fn ardupilot_with_a_microstrain_unit_on_a_pty_follows() {
+    follows(Make::ArdupilotMip);
+}
+
+#[test]
+fn inav_on_a_pty_follows() {
+    follows(Make::Inav);
+}
+
+/// Still, a roll, still, read by the parts that `level-then-turn` has.
+const SHORT: &str = "seed = 5\n[[motion]]\nkind = \"hold\"\nduration = \"1.5 s\"\n[[motion]]\nkind = \"rotate\"\n\
+    roll = \"30 deg/s\"\nduration = \"1 s\"\n[[motion]]\nkind = \"hold\"\nduration = \"0.5 s\"\n\
+    [gyro]\npart = \"MPU-9250\"\nrate = \"100 Hz\"\nsampling = \"average\"\nbias = \"[0.02, -0.02, 0.01] deg/s\"\n\
+    scale_error = \"0 %\"\nmisalignment = \"0 deg\"\nnonlinearity = \"0 %\"\n\
+    [accel]\npart = \"MPU-9250\"\nrate = \"100 Hz\"\nbias = \"[0.5, -0.5, 1] mg\"\n\
+    scale_error = \"0 %\"\nmisalignment = \"0 deg\"\nnonlinearity = \"0 %\"\n\
+    [mag]\npart = \"MPU-9250\"\nrate = \"50 Hz\"\nbias = \"[0, 0, 0] uT\"\n";
+
+/// The angular rate of its turn, deg/s.
+const RATE_DPS: f64 = 30.0;
+
+#[test]
+fn in_real_time_who_stamps_on_arrival_is_off_by_what_arrives_unevenly_and_no_more() {
+    let plan = Arc::new(Plan::parse(SHORT, "short", "short", &[]).unwrap_or_else(|error| panic!("{error}")));
+    for case in CASES.iter().filter(|case| matches!(case.make, Make::Px4 | Make::Ardupilot)) {
+        let (outcome, record, notices) = play(case, &plan, Speed::Times(1.0));
+        let counts = record.counts;
+        let sent: u64 = outcome.sensors[0].sent;
+        assert!(counts.samples >= sent && counts.refused == 0, "{}: {sent} sent, {counts}", case.make);
+        let rest_us = (outcome.rest_s * 1e6).round() as u64;
+        // How much later than the sender's times samples arrived, at the least and at the most.
+        let scene: Vec<_> =
+            record.history.iter().filter(|m| m.said_us.is_some_and(|us| us >= rest_us)).collect();
+        let late: Vec<i64> = scene.iter().map(|m| m.t_us as i64 - m.said_us.unwrap_or(0) as i64).collect();
+        let (least, most) = (late.iter().min().unwrap_or(&0), late.iter().max().unwrap_or(&0));
+        let uneven_s = (most - least) as f64 * 1e-6;
+        let errors: Vec<f64> = scene
+            .iter()
+            .map(|m| {
+                let t = SimTime((m.said_us.unwrap_or(0) - rest_us) as i64 * 1000);
+                let [w, x, y, z] = m.attitude;
+                let estimate = ratetable::geometry::Attitude::from_quat(glam::DQuat::from_xyzw(x, y, z, w));
+                estimate.angle_to(plan.trajectory.at(t.min(plan.duration)).attitude).to_degrees()
+            })
+            .collect();
+        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+        let bound = BOUND_DEG + RATE_DPS * uneven_s;
+        eprintln!(
+            "{} in real time: {rms:.3} deg RMS, uneven by {uneven_s:.4} s; {counts}; {notices:?}",
+            case.make
+        );
+        assert!(errors.len() > 200, "{}: {} estimates", case.make, errors.len());
+        assert!(rms < bound, "{}: {rms} deg, and {uneven_s} s uneven allow {bound}", case.make);
+    }
+}
+
+#[test]
+fn in_real_time_inav_at_rest_is_told_level() {
+    let case = Case::of(Make::Inav);
+    let sets: Vec<String> = case.sets.iter().copied().chain(["duration=2 s"]).map(str::to_owned).collect();
+    let plan = Arc::new(Plan::load("level-then-turn", &sets).unwrap());
+    // Twenty seconds of rest in two. At rest nothing depends on when a message comes; what is told is in steps of 0.1°.
+    let (outcome, record, _) = play(case, &plan, Speed::Times(10.0));
+    let told = outcome.attitude.expect("answers");
+    eprintln!("inav ten times as fast: {told:?}; {}", record.counts);
+    assert!(told.inclination_rms_deg < 0.3 && told.heading_rms_deg < 1.0, "{told:?}");
+    assert!(outcome.rest_s >= 20.0 && record.counts.samples > 0);
+}

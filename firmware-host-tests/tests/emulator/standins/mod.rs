@@ -1,0 +1,9 @@
+//! The emulator's targets against stand-ins for their firmwares: in memory, where every byte has an exact time, and
+//! over ptys and loopback TCP, opened by path.
+
+mod damage;
+mod doctor;
+mod follow;
+mod lies;
+mod link;
+mod memory;
