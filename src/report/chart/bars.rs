@@ -1,6 +1,6 @@
 //! Bars one below the other, each with its figure.
 
-use super::canvas::{Anchor, FAINT, Font, INK, Pen, RULE, color, sheet};
+use super::canvas::{Anchor, FAINT, Font, INK, Pen, RULE, WHITE, color, sheet};
 use super::plot::{Head, MARGIN, SMALL, longest};
 use crate::report::number;
 
@@ -41,7 +41,10 @@ pub fn bars(input: &Bars) -> String {
     let names: Vec<&str> = input.bars.iter().map(|bar| bar.name.as_str()).collect();
     let left = MARGIN + longest(&font, &names) + 10.0;
     let figure = |bar: &Bar| match bar.value.is_finite() {
-        true => format!("{} {} (+{})", number(bar.value), input.unit, number(bar.added)),
+        true => {
+            let sign = if bar.added < 0.0 { "−" } else { "+" };
+            format!("{} {} ({sign}{})", number(bar.value), input.unit, number(bar.added.abs()))
+        }
         false => "-".to_string(),
     };
     let figures: Vec<String> = input.bars.iter().map(figure).collect();
@@ -62,13 +65,12 @@ pub fn bars(input: &Bars) -> String {
             let font = Font::new(14.0, FAINT).anchor(Anchor::Middle);
             canvas.text("no data", (left + WIDTH / 2.0, top + BAR), &font);
         }
-        for (i, (bar, figure)) in input.bars.iter().zip(&figures).enumerate() {
+        for (i, bar) in input.bars.iter().enumerate() {
             let (upper, middle) = (top + i as f64 * BAR + 4.0, top + (i as f64 + 0.5) * BAR);
             let (end, old) = (at(bar.value), at(bar.value - bar.added.max(0.0)));
             canvas.rect((left, upper), (old - left, BAR - 8.0), color(0), 0.35);
             canvas.rect((old, upper), (end - old, BAR - 8.0), color(0), 1.0);
             canvas.text(&bar.name, (left - 8.0, middle), &font.anchor(Anchor::End));
-            canvas.text(figure, (end + 8.0, middle), &small);
         }
         if let Some((name, value)) = &input.line {
             canvas.line(
@@ -77,6 +79,12 @@ pub fn bars(input: &Bars) -> String {
                 &Pen::new(INK, 1.2).dashed(5.0, 3.0),
             );
             canvas.text(name, (at(*value) + 5.0, top - 12.0), &small);
+        }
+        for (i, (bar, figure)) in input.bars.iter().zip(&figures).enumerate() {
+            let (from, middle) = (at(bar.value) + 8.0, top + (i as f64 + 0.5) * BAR);
+            // Where the line would run through it, the figure goes before.
+            canvas.rect((from - 3.0, middle - 8.0), (small.width(figure) + 6.0, 16.0), WHITE, 1.0);
+            canvas.text(figure, (from, middle), &small);
         }
     })
 }
