@@ -2,7 +2,7 @@
 //!
 //! A [`Firmware`] touches no link and reads no clock: bytes and times go in, what it says comes out, so that a test
 //! holds a whole conversation in memory. [`StandIn`] is the loop around one, on a port and a [`Clock`].
-//! What the firmwares have in common is here: an estimator of their own ([`Own`]), which nobody else's attitude
+//! What the firmwares have in common is here: an estimator of their own, which nobody else's attitude
 //! reaches, and a [`Record`] of what came of it.
 
 mod ardupilot;
