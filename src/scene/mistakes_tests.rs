@@ -344,7 +344,7 @@ const EARTH: &[Case] = &[
 const REST: &[Case] = &[
     (
         gyro!("[[output]]\nto = \"mpu\"\n"),
-        &[("5:6", "`mpu` is no PROTOCOL@LINK: write, for example, mpu@pty")],
+        &[("5:6", "`mpu` is no PROTOCOL@LINK: write, for example, mpu@/dev/ttyACM0")],
     ),
     (
         gyro!("[[output]]\nto = \"mpuu@pty\"\n"),

@@ -74,6 +74,12 @@ impl Heard {
         Heard { plan, shared, speed, lockstep, links: Vec::new(), newest: None }
     }
 
+    /// Whether it can be told when an estimate held. As fast as the other side reads, an arrival says nothing: some
+    /// seconds of the stream may be on their way.
+    pub(super) fn is_timed(&self, estimate: &Estimate) -> bool {
+        self.speed != Speed::Max || self.lockstep || matches!(estimate.stamp, Stamp::Sample(_))
+    }
+
     /// Keeps an estimate that arrived on a link at `now` (ns on the run's clock); one of the rest before the scene
     /// counts for nothing.
     pub(super) fn take_in(&mut self, link: usize, Estimate { stamp, attitude }: Estimate, now: i64) {
@@ -176,6 +182,20 @@ mod tests {
             prop_assert!((off.roll_deg - body.x.to_degrees()).abs() < 1e-6);
             prop_assert!((off.pitch_deg - body.y.to_degrees()).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn at_full_speed_only_what_names_its_sample_or_keeps_step_is_judged() {
+        let plan =
+            Arc::new(Plan::parse("duration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\n", "s", "s", &[]).unwrap());
+        let heard = |speed, lockstep| Heard::new(plan.clone(), Arc::default(), speed, lockstep);
+        let estimate = |stamp| Estimate { stamp, attitude: Attitude::IDENTITY };
+        for stamp in [Stamp::Arrival, Stamp::Own(1)] {
+            assert!(!heard(Speed::Max, false).is_timed(&estimate(stamp)));
+            assert!(heard(Speed::Max, true).is_timed(&estimate(stamp)));
+            assert!(heard(Speed::Times(20.0), false).is_timed(&estimate(stamp)));
+        }
+        assert!(heard(Speed::Max, false).is_timed(&estimate(Stamp::Sample(SimTime::ZERO))));
     }
 
     #[test]

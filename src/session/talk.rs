@@ -16,6 +16,8 @@ pub(super) struct Talk {
     sides: Vec<Side>,
     pub heard: Heard,
     notices: Vec<String>,
+    /// Whether the user knows that estimates are not judged.
+    told_untimed: bool,
     /// A ground station, and on which link the controller is that it talks to.
     ground: Option<(Sender, usize)>,
     /// Who waits for an answer in lockstep.
@@ -45,7 +47,7 @@ impl Talk {
             took: Arc::default(),
         };
         let sides = outputs.iter().zip(senders).map(side).collect();
-        Talk { sides, heard, notices: Vec::new(), ground: None, pacing: None }
+        Talk { sides, heard, notices: Vec::new(), told_untimed: false, ground: None, pacing: None }
     }
 
     /// Holds this conversation on a link in place of its protocol's own.
@@ -86,7 +88,14 @@ impl Talk {
 
     fn said(&mut self, link: usize, said: Said<'_>, now: i64) {
         match said {
-            Said::Estimate(estimate) => self.heard.take_in(link, estimate, now),
+            Said::Estimate(estimate) if self.heard.is_timed(&estimate) => {
+                self.heard.take_in(link, estimate, now);
+            }
+            Said::Estimate(_) => {
+                if !std::mem::replace(&mut self.told_untimed, true) {
+                    self.notices.push("attitudes come back that do not say which sample they rest on; at --speed max nothing else tells when they held, so they are not judged: leave --speed out".into());
+                }
+            }
             Said::Reply(bytes) => self.reply(link, bytes),
             Said::Took => {
                 self.sides[link].took.fetch_add(1, Ordering::Release);
