@@ -223,9 +223,9 @@ fn depth(file: &Path) -> usize {
 
 fn allowed(room: &str) -> Option<BTreeSet<&'static str>> {
     let (_, arrows) = ARROWS.iter().find(|(name, _)| *name == room)?;
-    // `os` lies below the foundation, which uses it.
-    let has_ground = FOUNDATION.contains(&room) || room == "os";
-    let foundation: &[&str] = if has_ground { &[] } else { &FOUNDATION };
+    // `os` lies under one of the foundation.
+    let below = room == "os" || FOUNDATION.contains(&room);
+    let foundation: &[&str] = if below { &[] } else { &FOUNDATION };
     Some(foundation.iter().chain(*arrows).copied().collect())
 }
 
