@@ -3,7 +3,6 @@
 //! [`judge`] takes a whole series of estimates: it finds when each of them held (by the echo of a sample's time, or by
 //! the delay at which the motion agrees best), splits the error into inclination and heading ([`AttitudeError`]), and
 //! where the error is large tries the usual mistakes of axes, order and sign, so that the report can name one.
-//! [`Scorer`] adds up errors one by one while a run goes on.
 
 mod clock;
 mod delay;
@@ -12,7 +11,6 @@ mod file;
 mod judge;
 mod looks;
 mod offset;
-mod running;
 mod sampled;
 mod track;
 
@@ -21,7 +19,6 @@ pub use file::{FileError, Recorded, read};
 pub use judge::{
     Align, Clock, DelayKnown, Figures, Judged, Options, Row, Stamp, Timed, Truth, judge, judge_readings,
 };
-pub use running::{Score, Scorer};
 pub use track::{Track, TrackError};
 
 #[cfg(test)]

@@ -118,6 +118,7 @@ fn known_errors_delays_and_mistakes_come_back_through_files() {
     assert!((figure(&report, "boot", "clock_offset_s") - 300.0).abs() < 1e-4, "{said}");
     assert!(figure(&report, "boot", "max_deg") < 0.01);
     assert!(said.contains("swapped: estimate looks NED/ENU swapped ("), "{said}");
+    assert!(!said.contains("swapped: its delay"), "of a mistaken attitude nothing is said of time: {said}");
     assert!(figure(&report, "poor", "rms_deg") > 10.0 && report["estimates"][3].get("looks").is_none());
 
     let (report, _, _) = flight.score(&[&late, "--align", "heading"]);
@@ -194,6 +195,8 @@ fn what_cannot_be_scored_is_told_in_one_message_each() {
             "none of its 1 attitudes is at a time at which the truth is known",
         ),
         (vec!["vqf", "--axes", "xyz"], "write ned-frd or enu-flu"),
+        (vec!["vqf", "--limit", "rms<1"], "there is no `rms`, but name, source, samples, rms_deg"),
+        (vec!["vqf", "--limit", "estimates.ekf.rms_deg<1"], "there is no `ekf`, but vqf"),
     ] {
         let (_, said, code) = flight.score(&arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");

@@ -26,7 +26,7 @@ pub struct Arguments {
     set: Vec<String>,
     /// Make this many runs of the scene, each in a folder of its own, seeded by its index and with its part of [sweep]
     /// (default where [sweep] has lists: every combination once)
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     runs: Option<u64>,
     /// Make only the runs whose index leaves the remainder I when divided by N
     #[arg(long, value_name = "I/N")]

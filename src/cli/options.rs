@@ -4,6 +4,7 @@ use crate::link::Address;
 use crate::quantity::{self, Sign};
 use crate::report::Limit;
 use crate::scene::{Destination, Output, Plan};
+use crate::score::Align;
 use crate::session::Speed;
 use crate::time::SimTime;
 use std::time::Duration;
@@ -40,9 +41,34 @@ pub fn speed(text: &str) -> Result<Speed, String> {
     }
 }
 
-/// `--rest`: a time, or `0`.
-pub fn rest(text: &str) -> Result<SimTime, String> {
+/// `--rest`, `--settle`: a time, or `0`.
+pub fn from_zero(text: &str) -> Result<SimTime, String> {
     Ok(SimTime(wait(text)?.as_nanos() as i64))
+}
+
+/// `--align`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Alignment {
+    /// Nothing
+    None,
+    /// One constant heading, which an estimate without a magnetometer cannot know
+    Heading,
+}
+
+impl Alignment {
+    /// As spelled.
+    pub const fn name(self) -> &'static str {
+        ["none", "heading"][self as usize]
+    }
+}
+
+impl From<Alignment> for Align {
+    fn from(alignment: Alignment) -> Align {
+        match alignment {
+            Alignment::None => Align::None,
+            Alignment::Heading => Align::Heading,
+        }
+    }
 }
 
 /// `--qgc`: where a ground station listens.

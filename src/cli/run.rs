@@ -9,7 +9,7 @@ use crate::report::{
     AttitudeReport, Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
 };
 use crate::scene::{Destination, Output, OutputFault, Overload, Plan};
-use crate::score::{Align, DelayKnown, Figures};
+use crate::score::{DelayKnown, Figures};
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
@@ -38,17 +38,17 @@ pub struct Arguments {
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = options::wait)]
     wait: Duration,
     /// How long the vehicle is held still before the scene at the least, and then until the other side is ready [default: what a target needs]
-    #[arg(long, value_name = "TIME", value_parser = options::rest)]
+    #[arg(long, value_name = "TIME", value_parser = options::from_zero)]
     rest: Option<SimTime>,
     /// Pass the controller's other messages to and from a ground station over UDP
     #[arg(long, value_name = "ADDR:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:14550", value_parser = options::ground)]
     qgc: Option<Address>,
     /// Scene time from which on the other side's estimates are judged
-    #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::rest)]
+    #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::from_zero)]
     settle: SimTime,
-    /// What is taken out of its estimates first: nothing, or one constant heading, which six axes cannot know
-    #[arg(long, value_name = "none|heading", default_value = "none")]
-    align: Alignment,
+    /// What to take out of its estimates before they are judged
+    #[arg(long, value_enum, default_value_t = options::Alignment::None)]
+    align: options::Alignment,
     /// Keep the pacing thread to this processor
     #[arg(long, value_name = "N", value_parser = options::processor)]
     cpu: Option<usize>,
@@ -70,22 +70,6 @@ pub struct Arguments {
     /// A program to test: started when the links are ready, {} standing for the first one
     #[arg(last = true, value_name = "COMMAND")]
     command: Vec<String>,
-}
-
-/// `--align`.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Alignment {
-    None,
-    Heading,
-}
-
-impl From<Alignment> for Align {
-    fn from(alignment: Alignment) -> Align {
-        match alignment {
-            Alignment::None => Align::None,
-            Alignment::Heading => Align::Heading,
-        }
-    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {

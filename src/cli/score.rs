@@ -4,14 +4,13 @@ mod charts;
 mod sources;
 mod text;
 
-use super::{Refusal, Verdict, options, say};
+use super::options::{self, Alignment};
+use super::{Refusal, Verdict, say};
 use crate::dataset;
 use crate::geometry::Axes;
-use crate::quantity::{self, Sign};
 use crate::report::{Limit, LimitError, ScoreReport, Scored};
-use crate::score::{self, Align, Clock, DelayKnown, Figures, Judged, Recorded, Track};
+use crate::score::{self, Clock, DelayKnown, Figures, Judged, Recorded, Track};
 use crate::time::SimTime;
-use clap::ValueEnum;
 use serde_json::Value;
 use std::path::PathBuf;
 
@@ -24,10 +23,10 @@ pub struct Arguments {
     #[arg(required = true)]
     estimate: Vec<String>,
     /// What to take out of each estimate before it is judged
-    #[arg(long, value_enum, default_value_t = Aligned::None)]
-    align: Aligned,
+    #[arg(long, value_enum, default_value_t = Alignment::None)]
+    align: Alignment,
     /// Leave out so much from the truth's start on
-    #[arg(long, value_name = "TIME", default_value = "0", value_parser = settle)]
+    #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::from_zero)]
     settle: SimTime,
     /// The axes of tables and TUM trajectories: ned-frd or enu-flu [default: the dataset's, else ned-frd]
     #[arg(long, value_name = "AXES", value_parser = axes)]
@@ -45,21 +44,6 @@ pub struct Arguments {
     /// Print the report as JSON on standard output
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Aligned {
-    /// Nothing
-    None,
-    /// One constant heading, which an estimate without a magnetometer cannot know
-    Heading,
-}
-
-fn settle(text: &str) -> Result<SimTime, String> {
-    if text == "0" {
-        return Ok(SimTime::ZERO);
-    }
-    quantity::duration_ns(text, Sign::NonNegative).map(SimTime).map_err(|error| error.to_string())
 }
 
 fn axes(text: &str) -> Result<Axes, String> {
@@ -119,12 +103,8 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
 
 /// On the truth's clock, unless the times do not fit or the estimate is far off there and near on a clock of its own.
 fn judge(track: &Track, recorded: &Recorded, arguments: &Arguments) -> Option<Judged> {
-    let align = match arguments.align {
-        Aligned::None => Align::None,
-        Aligned::Heading => Align::Heading,
-    };
     let options = score::Options {
-        align,
+        align: arguments.align.into(),
         clock: Clock::Scene,
         from: track.first() + arguments.settle,
         until: track.last(),
@@ -151,9 +131,9 @@ fn judge(track: &Track, recorded: &Recorded, arguments: &Arguments) -> Option<Ju
 }
 
 /// What would help.
-fn advice(figures: &Figures, align: Aligned) -> Option<String> {
+fn advice(figures: &Figures, align: Alignment) -> Option<String> {
     let heading_alone = figures.heading_rms_deg > 10.0 && figures.inclination_rms_deg < 5.0;
-    (align == Aligned::None && heading_alone && figures.looks.is_none()).then(|| {
+    (align == Alignment::None && heading_alone && figures.looks.is_none()).then(|| {
         "only its heading is far off: without a magnetometer it is free, and --align heading takes a constant one out"
             .to_string()
     })
@@ -165,7 +145,7 @@ fn report(arguments: &Arguments, estimates: Vec<Scored>) -> Result<ScoreReport, 
         ok: true,
         failed: Vec::new(),
         truth: arguments.truth.display().to_string(),
-        align: if arguments.align == Aligned::Heading { "heading" } else { "none" }.into(),
+        align: arguments.align.name().into(),
         settle_s: arguments.settle.seconds(),
         estimates,
     };
@@ -214,6 +194,8 @@ fn check_limits(limits: &[Limit], sources: &[Source]) -> Result<(), LimitError> 
     let shape = serde_json::json!({ "estimates": estimates });
     limits.iter().try_for_each(|limit| match limit.check(&one) {
         Ok(()) => Ok(()),
-        Err(_) => limit.check(&shape),
+        Err(of_one) => {
+            limit.check(&shape).map_err(|of_all| if limit.is_of("estimates") { of_all } else { of_one })
+        }
     })
 }

@@ -72,11 +72,11 @@ impl Figure {
 
 fn of_sensor(kind: SensorKind) -> Figure {
     let (title, y_label) = match kind {
-        SensorKind::Gyro => ("Gyroscope", "angular rate, deg/s"),
-        SensorKind::Accel => ("Accelerometer", "specific force, m/s²"),
-        SensorKind::Mag => ("Magnetometer", "magnetic field, µT"),
-        SensorKind::Baro => ("Barometer", "pressure, hPa"),
-        SensorKind::Gps => ("GPS position from the start", "displacement, m"),
+        SensorKind::Gyro => ("Gyroscope", "angular rate (deg/s)"),
+        SensorKind::Accel => ("Accelerometer", "specific force (m/s²)"),
+        SensorKind::Mag => ("Magnetometer", "magnetic field (µT)"),
+        SensorKind::Baro => ("Barometer", "pressure (hPa)"),
+        SensorKind::Gps => ("GPS position from the start", "displacement (m)"),
     };
     let (read, truth): (&[_], &[_]) = match kind {
         SensorKind::Baro => (&["pressure"], &["true pressure"]),
@@ -90,7 +90,7 @@ fn of_sensor(kind: SensorKind) -> Figure {
 
 fn of_angles() -> Figure {
     let series = ["roll", "pitch", "yaw"].map(|label| line(label, true)).into();
-    Figure { file_stem: "angles", title: "Reference angles", y_label: "angle, deg", series, wraps: true }
+    Figure { file_stem: "angles", title: "Reference angles", y_label: "angle (deg)", series, wraps: true }
 }
 
 fn line(label: &'static str, is_truth: bool) -> Series {

@@ -73,6 +73,11 @@ impl Limit {
         }
     }
 
+    /// Whether its field is `name` or something inside it.
+    pub fn is_of(&self, name: &str) -> bool {
+        self.field.split('.').next() == Some(name)
+    }
+
     /// `None` if the report keeps the limit, else what it says: `sensors.gyro.late_us.p99 = 312 > 200`.
     pub fn broken(&self, report: &Value) -> Option<String> {
         let value = match self.find(report) {

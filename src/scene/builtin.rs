@@ -26,3 +26,20 @@ pub fn text(name: &str) -> Option<&'static str> {
 pub fn about(text: &str) -> &str {
     text.lines().next().unwrap_or_default().trim_start_matches(['#', ' '])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Plan;
+
+    #[test]
+    fn a_scene_made_for_flight_controllers_warns_of_nothing() {
+        let made_for_them: Vec<_> =
+            SCENES.iter().filter(|(_, text)| about(text).starts_with("Tests ")).collect();
+        assert_eq!(made_for_them.len(), 7);
+        for (name, _) in made_for_them {
+            let plan = Plan::load(name, &[]).unwrap_or_else(|error| panic!("{error}"));
+            assert!(plan.warnings.is_empty(), "{name}: {:?}", plan.warnings);
+        }
+    }
+}

@@ -156,11 +156,11 @@ impl Talk {
         let Side { protocol, bytes, messages, .. } = &self.sides[link];
         match (bytes, messages) {
             (0, _) => {
-                "nothing came from it: is it switched on, wired (TX to RX) and at this end of the link?"
+                "nothing came from it (is it switched on, wired TX to RX, and at this end of the link?)"
                     .into()
             }
             (_, 0) => format!(
-                "{bytes} bytes came and no {protocol} message among them: is it at this baud rate, and does it speak {protocol} on this port?"
+                "{bytes} bytes came and no {protocol} message among them (is it at this baud rate, and does it speak {protocol} on this port?)"
             ),
             _ => format!("{messages} messages came in {bytes} bytes, but not what it begins with"),
         }

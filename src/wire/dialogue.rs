@@ -95,6 +95,28 @@ pub trait Dialogue: Send {
     }
 }
 
+/// After so long without a byte, ns, what is held is judged as it is: noise that looks like the start of a long packet
+/// would hide what comes behind it.
+const PAUSE: i64 = 100_000_000;
+
+/// Watches for a [`PAUSE`] in what arrives.
+#[derive(Debug, Default)]
+struct Pause {
+    heard: Option<i64>,
+}
+
+impl Pause {
+    /// Bytes came.
+    fn heard(&mut self, now: i64) {
+        self.heard = Some(now);
+    }
+
+    /// Whether there is one since then; said once.
+    fn is_now(&mut self, now: i64) -> bool {
+        self.heard.take_if(|heard| now - *heard >= PAUSE).is_some()
+    }
+}
+
 /// The conversation of a protocol, as `controller` wants it led; `None` where the other side says nothing.
 pub fn dialogue(protocol: Protocol, controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
     match protocol {

@@ -48,7 +48,8 @@ fn notes(scored: &Scored) -> Vec<String> {
     if let Some(offset) = f.clock_offset_s {
         notes.push(format!("its clock is {offset:.6} s ahead of the truth's, its delay included"));
     }
-    if let (DelayKnown::Unknown, Some(doubt)) = (f.delay_known, f.delay_doubt) {
+    // Of an estimate that is mistaken the motion says nothing of time.
+    if let (DelayKnown::Unknown, Some(doubt), None) = (f.delay_known, f.delay_doubt, &f.looks) {
         notes.push(format!("its delay is not known: {doubt}"));
     }
     notes

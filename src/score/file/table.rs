@@ -21,6 +21,9 @@ const EULERS: [([&str; 3], f64); 2] = [
 const TIMES: [&str; 3] = ["t", "time", "timestamp"];
 /// Units of time and how many ns they are.
 const UNITS: [(&str, f64); 4] = [("ns", 1.0), ("us", 1e3), ("ms", 1e6), ("s", 1e9)];
+/// A trajectory's columns, and those of its quaternion.
+const TUM_COLUMNS: usize = 8;
+const TUM: [usize; 4] = [7, 4, 5, 6];
 /// As many mistakes are listed.
 const LISTED: usize = 5;
 
@@ -33,6 +36,17 @@ enum Attitudes {
     Euler([usize; 3], f64),
 }
 
+/// What the columns of a table are.
+struct Columns {
+    names: Vec<String>,
+    /// Whether it is a trajectory, whose columns have no names.
+    is_tum: bool,
+    time: usize,
+    /// How many ns the unit of time is, where the name says so.
+    unit: Option<f64>,
+    attitudes: Attitudes,
+}
+
 /// One row as numbers, with its line.
 struct Row {
     line: usize,
@@ -40,12 +54,20 @@ struct Row {
 }
 
 pub(super) fn read(name: &str, text: &str, axes: Axes) -> Result<Recorded, FileError> {
+    let text = text.trim_start_matches('\u{feff}');
     let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
-    let Some(&(first, header)) = lines.peek() else {
+    let mut lines = lines.filter(|(_, line)| !line.is_empty());
+    let mut comment = None;
+    let first = loop {
+        match lines.next() {
+            Some((_, text)) if text.starts_with('#') => comment = Some(text.trim_start_matches('#')),
+            first => break first,
+        }
+    };
+    let Some((first, top)) = first else {
         return Err(FileError::Content(format!("{name} is empty")));
     };
-    let separator = [',', ';', '\t'].into_iter().find(|separator| header.contains(*separator));
+    let separator = [',', ';', '\t'].into_iter().find(|separator| top.contains(*separator));
     let cells = |line: &str| -> Vec<String> {
         match separator {
             Some(separator) => {
@@ -54,14 +76,13 @@ pub(super) fn read(name: &str, text: &str, axes: Axes) -> Result<Recorded, FileE
             None => line.split_whitespace().map(String::from).collect(),
         }
     };
-    let names = cells(header);
-    let is_tum = names.len() == 8 && names.iter().all(|cell| cell.parse::<f64>().is_ok());
-    let (time, unit, attitudes) = if is_tum {
-        (0, Some(1e9), Attitudes::Quaternion([7, 4, 5, 6]))
-    } else {
-        lines.next();
-        find(&names).map_err(|why| FileError::Content(format!("{name}:{first}: {why}")))?
-    };
+    let top_cells = cells(top);
+    let is_row = top_cells.iter().all(|cell| cell.parse::<f64>().is_ok());
+    let columns = if is_row { of_rows(top_cells, comment.map(cells)) } else { of_header(top_cells) };
+    let Columns { names, is_tum, time, unit, attitudes } =
+        columns.map_err(|why| FileError::Content(format!("{name}:{first}: {why}")))?;
+    let first = is_row.then_some((first, top));
+    let lines = first.into_iter().chain(lines.filter(|(_, line)| !line.starts_with('#')));
     let mut mistakes = Vec::new();
     let mut rows = Vec::new();
     for (line, text) in lines {
@@ -98,6 +119,34 @@ fn scaled(attitudes: Attitudes) -> Attitudes {
     match attitudes {
         Attitudes::Euler(columns, unit) => Attitudes::Euler(columns, unit.to_radians()),
         other => other,
+    }
+}
+
+/// By a first line of names.
+fn of_header(names: Vec<String>) -> Result<Columns, String> {
+    let (time, unit, attitudes) = find(&names)?;
+    Ok(Columns { names, is_tum: false, time, unit, attitudes })
+}
+
+/// Where the first line is a row: by the comment above it if that has the names, as NumPy writes them; else eight
+/// columns are a trajectory.
+fn of_rows(row: Vec<String>, above: Option<Vec<String>>) -> Result<Columns, String> {
+    let above = above.filter(|above| above.len() == row.len());
+    let named = above.and_then(|above| of_header(above).ok());
+    match named {
+        Some(columns) if !matches!(columns.attitudes, Attitudes::Quaternion(TUM)) => Ok(columns),
+        _ if row.len() == TUM_COLUMNS => Ok(Columns {
+            names: row,
+            is_tum: true,
+            time: 0,
+            unit: Some(1e9),
+            attitudes: Attitudes::Quaternion(TUM),
+        }),
+        Some(columns) => Ok(columns),
+        None => Err(
+            "is a row of numbers and not the header that a table begins with: t_s, qw, qx, qy, qz, or roll_deg, pitch_deg, yaw_deg"
+                .into(),
+        ),
     }
 }
 

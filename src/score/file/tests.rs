@@ -46,6 +46,16 @@ fn tables_are_read_by_the_names_of_their_columns() {
             let [roll, pitch, yaw] = [e.roll, e.pitch, e.yaw].map(f64::to_degrees);
             format!("{}\t{yaw}\t{pitch}\t{roll}", k * 10_000)
         }),
+        // As numpy.savetxt writes a header, and a spreadsheet the first bytes of a file.
+        rows("# made by hand\n# t_s,qw,qx,qy,qz", |k| {
+            format!("{},{},{},{},{}", k as f64 * 0.01, q(k).w, q(k).x, q(k).y, q(k).z)
+        }),
+        rows("# t_s qw qx qy qz gx gy gz", |k| {
+            format!("{} {} {} {} {} 1 2 3", k as f64 * 0.01, q(k).w, q(k).x, q(k).y, q(k).z)
+        }),
+        rows("\u{feff}t_ms,qw,qx,qy,qz", |k| {
+            format!("{},{},{},{},{}", k * 10, q(k).w, q(k).x, q(k).y, q(k).z)
+        }),
         // A TUM trajectory has w last and no header.
         rows("# time x y z qx qy qz qw", |k| {
             format!("{} 1 2 3 {} {} {} {}", k as f64 * 0.01, q(k).x, q(k).y, q(k).z, q(k).w)
@@ -101,6 +111,8 @@ fn every_mistake_has_its_place_and_what_would_be_right() {
         ("", "x.csv is empty"),
         ("t_s,qw,qx,qy,qz\n", "no rows"),
         ("# hello\na,b\n1,2", "x.csv:2: has neither time nor attitude"),
+        ("1,1,0,0,0\n2,1,0,0,0", "x.csv:1: is a row of numbers and not the header"),
+        ("# foo bar\n1,1,0,0,0", "x.csv:2: is a row of numbers"),
         ("t_s,a\n1,2", "x.csv:1: has no attitude: qw, qx"),
         ("qw,qx,qy,qz\n1,0,0,0", "has no time: t_ns"),
         ("t_s,roll,pitch,yaw\n1,2,3,4", "no unit: call them roll_deg"),

@@ -10,7 +10,7 @@ mod px4;
 mod steady;
 mod voice;
 
-use super::{Dialogue, Estimate, Peer, Said, Stage, Stamp};
+use super::{Dialogue, Estimate, Pause, Peer, Said, Stage, Stamp};
 use crate::geometry::{Attitude, Euler};
 use crate::wire::Controller;
 use crate::wire::mavlink::{COMPONENT, NO_AUTOPILOT};
@@ -31,16 +31,11 @@ const GROUND_STATION: u8 = 6;
 /// angles only when none has come for so long, ns.
 const QUATERNION_GONE: i64 = 1_000_000_000;
 
-/// After so long without a byte what is held is judged as it is, ns: noise that looks like the start of a long packet
-/// would hide the heartbeats behind it, and a message that cannot be checked waits for the next one.
-const PAUSE: i64 = 100_000_000;
-
 /// The conversation on one link.
 pub(super) struct Mavlink {
     decoder: Decoder,
     ear: Ear,
-    /// When bytes came that may wait for more.
-    heard_at: Option<i64>,
+    pause: Pause,
 }
 
 /// The autopilot at the other end.
@@ -81,7 +76,7 @@ impl Mavlink {
         };
         Mavlink {
             decoder: Decoder::new(),
-            heard_at: None,
+            pause: Pause::default(),
             ear: Ear {
                 voice: Voice::default(),
                 autopilot: None,
@@ -97,8 +92,7 @@ impl Mavlink {
 impl Mavlink {
     /// Judges what is held if nothing has come behind it for a while.
     fn end_of_burst(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        if self.heard_at.is_some_and(|at| now - at > PAUSE) {
-            self.heard_at = None;
+        if self.pause.is_now(now) {
             let Mavlink { decoder, ear, .. } = self;
             decoder.finish_whole(|received| ear.take(received, now, say));
         }
@@ -108,7 +102,7 @@ impl Mavlink {
 impl Dialogue for Mavlink {
     fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
         self.end_of_burst(now, say);
-        self.heard_at = Some(now);
+        self.pause.heard(now);
         let Mavlink { decoder, ear, .. } = self;
         decoder.feed_whole(bytes, |received| ear.take(received, now, say));
     }

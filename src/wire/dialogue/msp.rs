@@ -3,7 +3,7 @@
 //! Until it answers, INAV is asked who it is and for its attitude twice a second. It hears the stream once it answers
 //! a simulator message; it answers every one.
 
-use super::{Controller, Dialogue, Estimate, Said, Stage, Stamp};
+use super::{Controller, Dialogue, Estimate, Pause, Said, Stage, Stamp};
 use crate::geometry::{Attitude, Euler};
 use ratetable_protocols::Error;
 use ratetable_protocols::msp::{self, Decoder, Direction, MAX_LEN, Message, Received, fc_variant, simulator};
@@ -12,8 +12,6 @@ use ratetable_protocols::msp::{self, Decoder, Direction, MAX_LEN, Message, Recei
 const ASK_EVERY: i64 = 500_000_000;
 /// How long nobody answers before that is said, ns.
 const PATIENCE: i64 = 5_000_000_000;
-/// After so long a pause, ns, what began before it is not waited for.
-const PAUSE: i64 = 100_000_000;
 
 /// One link to a flight controller that speaks MSP.
 pub(super) struct Inav {
@@ -23,8 +21,7 @@ pub(super) struct Inav {
     /// When it was first asked, and when it is next.
     asked: Option<i64>,
     ask_at: i64,
-    /// When bytes came last, until a pause after them.
-    heard: Option<i64>,
+    pause: Pause,
     told: Told,
 }
 
@@ -46,7 +43,7 @@ impl Inav {
             stage,
             asked: None,
             ask_at: i64::MIN,
-            heard: None,
+            pause: Pause::default(),
             told: Told::default(),
         }
     }
@@ -66,14 +63,14 @@ impl Inav {
 
 impl Dialogue for Inav {
     fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        self.heard = Some(now);
+        self.pause.heard(now);
         let mut decoder = std::mem::take(&mut self.decoder);
         decoder.feed(bytes, |received| self.take(received, say));
         self.decoder = decoder;
     }
 
     fn tick(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        if self.heard.take_if(|heard| now - *heard >= PAUSE).is_some() {
+        if self.pause.is_now(now) {
             let mut decoder = std::mem::take(&mut self.decoder);
             decoder.finish(|received| self.take(received, say));
             self.decoder = decoder;
@@ -153,6 +150,7 @@ fn estimate(roll: f64, pitch: f64, yaw: f64) -> Said<'static> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::PAUSE;
     use super::*;
     use proptest::prelude::*;
     use ratetable_protocols::msp::{attitude, simulator_reply};

@@ -4,7 +4,7 @@
 //! its boot until all are. A command is answered by itself, a register that is read by its contents, anything else by
 //! an error, so that it is sent again. After the last one it is deaf to all but the stream.
 
-use super::{Controller, Dialogue, Peer, Said, Stage};
+use super::{Controller, Dialogue, Pause, Peer, Said, Stage};
 use crate::time::Rate;
 use ratetable_protocols::Error;
 use ratetable_protocols::vectornav::line::Line;
@@ -18,8 +18,6 @@ const MODEL: &str = "VNRRG,01,VN-100T-CR";
 const ERROR: &str = "VNERR,12";
 /// How long nothing is asked before that is said, ns.
 const PATIENCE: i64 = 10_000_000_000;
-/// After so long a pause, ns, what began before it is not waited for.
-const PAUSE: i64 = 100_000_000;
 
 /// One link to a flight controller that takes this for its VN-100.
 pub(super) struct Unit {
@@ -29,8 +27,7 @@ pub(super) struct Unit {
     /// At which it asked for IMU packets.
     rate: Option<Rate>,
     since: Option<i64>,
-    /// When bytes came last, until a pause after them.
-    heard: Option<i64>,
+    pause: Pause,
     asked: bool,
     told_silence: bool,
 }
@@ -85,7 +82,7 @@ impl Unit {
             stage,
             rate: None,
             since: None,
-            heard: None,
+            pause: Pause::default(),
             asked: false,
             told_silence: false,
         }
@@ -148,14 +145,14 @@ impl Unit {
 
 impl Dialogue for Unit {
     fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        self.heard = Some(now);
+        self.pause.heard(now);
         let mut decoder = std::mem::take(&mut self.decoder);
         decoder.feed(bytes, |received| self.take(received, say));
         self.decoder = decoder;
     }
 
     fn tick(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        if self.heard.take_if(|heard| now - *heard >= PAUSE).is_some() {
+        if self.pause.is_now(now) {
             let mut decoder = std::mem::take(&mut self.decoder);
             decoder.finish(|received| self.take(received, say));
             self.decoder = decoder;
@@ -191,6 +188,7 @@ fn reply(text: &str, say: &mut dyn FnMut(Said<'_>)) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::PAUSE;
     use super::*;
     use proptest::prelude::*;
 

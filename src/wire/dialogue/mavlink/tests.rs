@@ -569,7 +569,7 @@ fn noise_that_looks_like_a_long_packet_does_not_hide_what_follows() {
     let bytes = from(6, 1, &actuators(1));
     assert_eq!(hear(&mut dialogue, &bytes[..9], NANOS), []);
     (0..=9).for_each(|k| dialogue.tick(NANOS + k * STEP, &mut |_| {}));
-    assert_eq!(hear(&mut dialogue, &bytes[9..], NANOS + 10 * STEP), [Word::Took]);
+    assert_eq!(hear(&mut dialogue, &bytes[9..], NANOS + 10 * STEP - 1), [Word::Took]);
 }
 
 /// Whole messages of every kind that is acted on, and bytes that are none.

@@ -1,0 +1,57 @@
+//! One packet as it is handed from thread to thread.
+
+use crate::sensor::ByKind;
+use crate::time::SimTime;
+
+/// The longest packet of any protocol, bytes: a signed MAVLink 2 message, such as a ground station may send.
+pub const MAX_PACKET: usize = 280;
+
+/// One packet: when it is due, what it carries, its bytes. Plain data of fixed size, so that handing it over
+/// allocates nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Packet {
+    /// When it is due.
+    pub due: SimTime,
+    /// Bit i is set when it carries a new sample of the sensor of kind i.
+    pub carries: u8,
+    /// Samples of each kind that a newer one replaced before any packet carried them.
+    pub replaced: ByKind<u32>,
+    /// How many of its bytes go out at once, the others a little later; 0 = all of them. Of a packet without bytes: how
+    /// many bytes of the one before go out then.
+    pub piece: u16,
+    pub(super) len: u16,
+    pub(super) bytes: [u8; MAX_PACKET],
+}
+
+impl Packet {
+    /// A packet of these bytes, due then; longer ones are cut at [`MAX_PACKET`], which no protocol here reaches.
+    pub fn new(due: SimTime, carries: u8, bytes: &[u8]) -> Packet {
+        debug_assert!(bytes.len() <= MAX_PACKET, "{} bytes", bytes.len());
+        let len = bytes.len().min(MAX_PACKET);
+        let mut packet = Packet {
+            due,
+            carries,
+            replaced: ByKind::default(),
+            piece: 0,
+            len: len as u16,
+            bytes: [0; MAX_PACKET],
+        };
+        packet.bytes[..len].copy_from_slice(&bytes[..len]);
+        packet
+    }
+
+    /// No packet, but a time at which something is due: `piece` bytes of the packet before that are held back, or 0.
+    pub fn nothing(due: SimTime, piece: u16) -> Packet {
+        Packet { piece, ..Packet::new(due, 0, &[]) }
+    }
+
+    /// Whether it is no packet.
+    pub fn is_nothing(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes[..usize::from(self.len)]
+    }
+}
