@@ -32,7 +32,7 @@ mod field {
 pub struct Payload<T>(T);
 
 impl<T: AsRef<[u8]>> Payload<T> {
-    /// Takes `bytes` as a `SCALED_IMU` payload at full length.
+    /// Takes `bytes` as the payload of `SCALED_IMU`, 2 or 3 at full length.
     ///
     /// # Errors
     /// [`Error::Length`] unless there are exactly [`LEN`] bytes.
@@ -94,7 +94,7 @@ impl<T: AsRef<[u8]> + AsMut<[u8]>> Payload<T> {
     }
 }
 
-/// A `SCALED_IMU` payload at full length as plain values.
+/// The payload of `SCALED_IMU`, 2 or 3 at full length as plain values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Repr {
     /// Time since boot, ms.

@@ -10,7 +10,7 @@ use crate::wire::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
 use glam::DVec3;
 use ratetable_protocols::mavlink::{
     Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, hil_sensor,
-    scaled_imu, scaled_imu2, scaled_imu3,
+    scaled_imu,
 };
 use ratetable_protocols::{Error, Losses};
 use std::collections::BTreeMap;
@@ -118,9 +118,8 @@ impl Inertial {
                     Some(floating),
                 )
             }
-            Message::ScaledImu(scaled_imu::Repr { time_boot_ms, accel, gyro, mag, .. })
-            | Message::ScaledImu2(scaled_imu2::Repr { time_boot_ms, accel, gyro, mag, .. })
-            | Message::ScaledImu3(scaled_imu3::Repr { time_boot_ms, accel, gyro, mag, .. }) => {
+            Message::ScaledImu(seen) | Message::ScaledImu2(seen) | Message::ScaledImu3(seen) => {
+                let scaled_imu::Repr { time_boot_ms, accel, gyro, mag, .. } = seen;
                 let milli = [1e-3, 1e-3 * STANDARD_GRAVITY, 1e-3 * MICROTESLA_A_GAUSS, 0.0];
                 let ns = Some(i64::from(*time_boot_ms) * 1_000_000);
                 (0, ns, present(*mag), ints([*gyro, *accel, *mag]), Some(milli))
