@@ -4,22 +4,38 @@
 //! the delay at which the motion agrees best), splits the error into inclination and heading ([`AttitudeError`]), and
 //! where the error is large tries the usual mistakes of axes, order and sign, so that the report can name one.
 
+mod align;
+mod bench;
 mod clock;
+mod correlate;
 mod delay;
 mod error;
+mod figures;
 mod file;
 mod judge;
 mod looks;
 mod offset;
+mod packed;
+mod place;
+mod rates;
 mod sampled;
+mod series;
+mod stamped;
 mod track;
+mod turn;
 
+pub use align::Align;
 pub use error::AttitudeError;
+pub use figures::{Aligned, DelayKnown, Errors, Figures, Fitted};
 pub use file::{FileError, Recorded, read};
 pub use judge::{
-    Align, Clock, DelayKnown, Figures, Judged, Options, Row, Stamp, Timed, Truth, judge, judge_readings,
+    Delay, Judged, Options, Readings, Row, Stamp, Timed, Truth, Unjudged, judge, judge_series,
 };
+pub use place::Clock;
+pub use series::Series;
 pub use track::{Track, TrackError};
 
+#[cfg(test)]
+mod clock_tests;
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@ use crate::link::Address;
 use crate::quantity::{self, Sign};
 use crate::report::Limit;
 use crate::scene::{Destination, Output, Plan};
-use crate::score::Align;
+use crate::score::{Align, Delay};
 use crate::session::Speed;
 use crate::time::SimTime;
 use std::time::Duration;
@@ -53,12 +53,16 @@ pub enum Alignment {
     None,
     /// One constant heading, which an estimate without a magnetometer cannot know
     Heading,
+    /// One constant rotation of the world
+    World,
+    /// One constant rotation of the world and one of the body
+    Frames,
 }
 
 impl Alignment {
     /// As spelled.
     pub const fn name(self) -> &'static str {
-        ["none", "heading"][self as usize]
+        ["none", "heading", "world", "frames"][self as usize]
     }
 }
 
@@ -67,7 +71,21 @@ impl From<Alignment> for Align {
         match alignment {
             Alignment::None => Align::None,
             Alignment::Heading => Align::Heading,
+            Alignment::World => Align::World,
+            Alignment::Frames => Align::Frames,
         }
+    }
+}
+
+/// `--delay`.
+pub fn delay(text: &str) -> Result<Delay, String> {
+    match text {
+        "0" => Ok(Delay::Keep),
+        "fit" => Ok(Delay::Fit),
+        _ => match quantity::duration_ns(text, Sign::Any) {
+            Ok(ns) => Ok(Delay::Given(ns)),
+            Err(error) => Err(format!("{error}; or write 0 to leave it in, or fit to find it")),
+        },
     }
 }
 

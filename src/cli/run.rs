@@ -9,7 +9,7 @@ use crate::report::{
     AttitudeReport, Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
 };
 use crate::scene::{Destination, Output, OutputFault, Overload, Plan};
-use crate::score::{DelayKnown, Figures};
+use crate::score::Figures;
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
@@ -290,22 +290,6 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         lost_seq: None,
         broken: None,
     };
-    let figures = Figures {
-        samples: 0,
-        rms_deg: 0.0,
-        max_deg: 0.0,
-        inclination_rms_deg: 0.0,
-        inclination_max_deg: 0.0,
-        heading_rms_deg: 0.0,
-        heading_max_deg: 0.0,
-        delay_ms: None,
-        delay_known: DelayKnown::Unknown,
-        delay_doubt: None,
-        clock_offset_s: Some(0.0),
-        heading_offset_deg: Some(0.0),
-        looks: None,
-        looks_rms_deg: None,
-    };
     Report {
         version: env!("CARGO_PKG_VERSION").into(),
         ok: true,
@@ -320,7 +304,7 @@ pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
         host: host(false, false, Some(PacingReport::default())),
         sensors: plan.sensors.iter().map(sensor).collect(),
         links: outputs.iter().map(link).collect(),
-        attitude: Some(AttitudeReport { estimator: String::new(), figures }),
+        attitude: Some(AttitudeReport { estimator: String::new(), figures: Figures::shape() }),
     }
 }
 

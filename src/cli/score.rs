@@ -1,6 +1,8 @@
 //! `ratetable score`: recorded estimates and filters against the truth, side by side.
 
+mod book;
 mod charts;
+mod hints;
 mod sources;
 mod text;
 
@@ -9,9 +11,11 @@ use super::{Refusal, Verdict, say};
 use crate::dataset;
 use crate::geometry::Axes;
 use crate::report::{Limit, LimitError, ScoreReport, Scored};
-use crate::score::{self, Clock, DelayKnown, Figures, Judged, Recorded, Track};
+use crate::score::{self, Clock, Delay, Figures, Options, Series, Unjudged};
 use crate::time::SimTime;
+use book::Book;
 use serde_json::Value;
+use sources::Truth;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -25,6 +29,14 @@ pub struct Arguments {
     /// What to take out of each estimate before it is judged
     #[arg(long, value_enum, default_value_t = Alignment::None)]
     align: Alignment,
+    /// The delay on the dataset's own clock: 0 leaves it in, fit finds it, or a time such as 12ms; rows and charts are
+    /// without it, and figures with and without it are always told. It also says that the times are the dataset's
+    #[arg(long, value_name = "0|fit|TIME", allow_hyphen_values = true, value_parser = options::delay)]
+    delay: Option<Delay>,
+    /// Whose clock the estimates' times are of: the truth's, or another whose offset is found by the motion
+    /// [default: what the motion, or the times themselves, leave no doubt about]
+    #[arg(long, value_enum, conflicts_with = "delay")]
+    clock: Option<ClockOf>,
     /// Leave out so much from the truth's start on
     #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::from_zero)]
     settle: SimTime,
@@ -54,7 +66,30 @@ fn axes(text: &str) -> Result<Axes, String> {
 struct Source {
     name: String,
     source: String,
-    recorded: Recorded,
+    /// What is known of its clock.
+    clock: Clock,
+    recorded: Estimates,
+    hints: hints::Known,
+}
+
+/// What is judged.
+struct Estimates {
+    series: Series,
+    /// Other ways to read it.
+    others: Vec<(&'static str, Series)>,
+    /// In which it is written.
+    axes: Axes,
+    /// What the user should know of how it was read.
+    remarks: Vec<String>,
+}
+
+/// `--clock`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum ClockOf {
+    /// The truth's
+    Truth,
+    /// Another
+    Other,
 }
 
 pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
@@ -64,79 +99,73 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let truth = sources::truth(&arguments.truth, arguments.axes)?;
     let sources = sources::estimates(&truth, &arguments.estimate, arguments.axes)?;
     check_limits(&arguments.limit, &sources)?;
-    let mut judged = Vec::new();
+    let mut book = arguments.out.as_ref().map(|dir| Book::open(dir, arguments.force)).transpose()?;
     let mut scored = Vec::new();
-    for Source { name, source, recorded } in &sources {
-        let one = judge(&truth.track, recorded, arguments).ok_or_else(|| {
-            Refusal(format!(
-                "{source}: none of its {} attitudes is at a time at which the truth is known ({} to {}{})",
-                recorded.estimates.len(),
-                truth.track.first(),
-                truth.track.last(),
-                if arguments.settle > SimTime::ZERO { ", less --settle" } else { "" }
-            ))
-        })?;
-        let mut remarks = recorded.remarks.clone();
-        remarks.extend(advice(&one.figures, arguments.align));
-        let (name, source) = (name.clone(), source.clone());
-        scored.push(Scored { name, source, figures: one.figures.clone(), remarks });
-        judged.push(one);
+    for source in sources {
+        scored.push(one(&truth, source, arguments, book.as_mut())?);
     }
     let report = report(arguments, scored)?;
     eprint!("{}", text::report(&report));
-    if let Some(dir) = &arguments.out {
-        let json = serde_json::to_string_pretty(&report)? + "\n";
-        let files = [
-            ("report.json", json.into_bytes()),
-            ("errors.csv", charts::errors_csv(&report, &judged).into_bytes()),
-            ("attitude.svg", charts::attitude(&report, &judged, &truth).into_bytes()),
-            ("error.svg", charts::error(&report, &judged).into_bytes()),
-        ];
-        dataset::put_all(dir, arguments.force, &files)?;
+    let json = serde_json::to_string_pretty(&report)? + "\n";
+    if let (Some(book), Some(dir)) = (book, &arguments.out) {
+        book.close(&report, &truth, &json)?;
         eprintln!("{}: written", dir.display());
     }
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+        say(&json);
     }
     Ok(if report.ok { Verdict::Fine } else { Verdict::Failed })
 }
 
-/// On the truth's clock, unless the times do not fit or the estimate is far off there and near on a clock of its own.
-fn judge(track: &Track, recorded: &Recorded, arguments: &Arguments) -> Option<Judged> {
-    let options = score::Options {
-        align: arguments.align.into(),
-        clock: Clock::Scene,
-        from: track.first() + arguments.settle,
-        until: track.last(),
-        axes: recorded.axes,
-    };
-    let on = |clock| {
-        let options = score::Options { clock, ..options };
-        score::judge_readings(&|t| track.at(t), &recorded.estimates, &recorded.others, &options)
-    };
-    let within = |i: usize| {
-        let t = recorded.estimates[i].arrival;
-        track.first() <= t && t <= track.last()
-    };
-    let inside = (0..recorded.estimates.len()).filter(|&i| within(i)).count();
-    let is_ours = 2 * inside >= recorded.estimates.len();
-    let ours = if is_ours { Some(on(Clock::Scene)?) } else { None };
-    let is_good = |judged: &Judged| judged.figures.rms_deg < 10.0 || judged.figures.looks.is_some();
-    if ours.as_ref().is_some_and(is_good) {
-        return ours;
+/// Judges one estimate and adds its errors to the book.
+fn one(truth: &Truth, source: Source, arguments: &Arguments, book: Option<&mut Book>) -> Result<Scored, Refusal> {
+    let Source { name, source, clock, recorded, hints: given } = source;
+    let at = |t| truth.track.at(t);
+    let Estimates { series, others, axes, remarks } = recorded;
+    let (count, options) = (series.len(), options(truth, clock, axes, arguments));
+    let mut scored = Scored { name, source, figures: None, unknown: None, remarks, hints: Vec::new() };
+    match score::judge_series(&at, series, &others, &options) {
+        Ok(judged) => {
+            if let Some(book) = book {
+                book.add(&scored.name, &judged, &at)?;
+            }
+            scored.remarks.extend(judged.note.clone());
+            scored.hints = hints::of(&judged, given);
+            scored.figures = Some(judged.figures);
+        }
+        Err(Unjudged::NoTruth) => {
+            return Err(Refusal(format!(
+                "{}: none of its {count} attitudes is at a time at which the truth is known ({} to {}{})",
+                scored.source,
+                truth.track.first(),
+                truth.track.last(),
+                if arguments.settle > SimTime::ZERO { ", less --settle" } else { "" }
+            )));
+        }
+        Err(Unjudged::When(why)) => {
+            scored.unknown = Some(format!("{why}; if its times are the truth's, say --clock truth"));
+        }
     }
-    let theirs = on(Clock::Foreign);
-    let is_sure = |judged: &Judged| is_good(judged) && judged.figures.delay_doubt.is_none();
-    if ours.is_none() || theirs.as_ref().is_some_and(is_sure) { theirs } else { ours }
+    Ok(scored)
 }
 
-/// What would help.
-fn advice(figures: &Figures, align: Alignment) -> Option<String> {
-    let heading_alone = figures.heading_rms_deg > 10.0 && figures.inclination_rms_deg < 5.0;
-    (align == Alignment::None && heading_alone && figures.looks.is_none()).then(|| {
-        "only its heading is far off: without a magnetometer it is free, and --align heading takes a constant one out"
-            .to_string()
-    })
+/// How an estimate is judged.
+fn options(truth: &Truth, clock: Clock, axes: Axes, arguments: &Arguments) -> Options {
+    Options {
+        align: arguments.align.into(),
+        clock: match (arguments.clock, arguments.delay) {
+            _ if clock != Clock::Auto => clock,
+            (Some(ClockOf::Other), _) => Clock::Other,
+            (Some(ClockOf::Truth), _) | (_, Some(_)) => Clock::Truth,
+            (None, None) => Clock::Auto,
+        },
+        delay: arguments.delay.unwrap_or(Delay::Keep),
+        from: truth.track.first(),
+        until: truth.track.last(),
+        rest: truth.rest,
+        settle: arguments.settle,
+        axes,
+    }
 }
 
 fn report(arguments: &Arguments, estimates: Vec<Scored>) -> Result<ScoreReport, Refusal> {
@@ -149,6 +178,8 @@ fn report(arguments: &Arguments, estimates: Vec<Scored>) -> Result<ScoreReport, 
         settle_s: arguments.settle.seconds(),
         estimates,
     };
+    let unknown = report.estimates.iter().filter_map(|scored| Some((&scored.name, scored.unknown.as_ref()?)));
+    report.failed.extend(unknown.map(|(name, why)| format!("estimates.{name} cannot be judged: {why}")));
     let value = serde_json::to_value(&report)?;
     for limit in &arguments.limit {
         if limit.check(&value).is_ok() {
@@ -168,25 +199,10 @@ fn report(arguments: &Arguments, estimates: Vec<Scored>) -> Result<ScoreReport, 
 
 /// Whether every limit is of a field that there will be: before anything is judged.
 fn check_limits(limits: &[Limit], sources: &[Source]) -> Result<(), LimitError> {
-    let figures = Figures {
-        samples: 0,
-        rms_deg: 0.0,
-        max_deg: 0.0,
-        inclination_rms_deg: 0.0,
-        inclination_max_deg: 0.0,
-        heading_rms_deg: 0.0,
-        heading_max_deg: 0.0,
-        delay_ms: Some(0.0),
-        delay_known: DelayKnown::Unknown,
-        delay_doubt: None,
-        clock_offset_s: Some(0.0),
-        heading_offset_deg: Some(0.0),
-        looks: None,
-        looks_rms_deg: Some(0.0),
-    };
     let scored = |source: &Source| {
         let (name, source) = (source.name.clone(), source.source.clone());
-        let scored = Scored { name, source, figures: figures.clone(), remarks: Vec::new() };
+        let figures = Some(Figures::shape());
+        let scored = Scored { name, source, figures, unknown: None, remarks: Vec::new(), hints: Vec::new() };
         serde_json::to_value(scored).unwrap_or_default()
     };
     let estimates: Vec<Value> = sources.iter().map(scored).collect();

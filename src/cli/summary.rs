@@ -60,16 +60,21 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
 fn known(AttitudeReport { estimator, figures }: &AttitudeReport) -> String {
     let delay = match (figures.delay_ms, figures.delay_known, figures.delay_doubt) {
         (Some(ms), DelayKnown::Echoed, _) => format!(", answers {} ms after their sample", number(ms)),
-        (Some(ms), ..) => format!(", answers about {} ms late", number(ms)),
+        (Some(ms), ..) => {
+            let given = figures.as_arrived.map_or(String::new(), |errors| {
+                format!(" ({} deg RMS as they arrived)", number(errors.rms_deg))
+            });
+            format!(", answers about {} ms late{given}", number(ms))
+        }
         (None, _, Some(doubt)) => format!(", their delay not known: {doubt}"),
         (None, ..) => String::new(),
     };
     let mut text = format!(
         "\nattitude by {estimator}: {} deg RMS against the truth (inclination {}, heading {}), {} deg at most; {} answers{delay}\n",
-        number(figures.rms_deg),
-        number(figures.inclination_rms_deg),
-        number(figures.heading_rms_deg),
-        number(figures.max_deg),
+        number(figures.errors.rms_deg),
+        number(figures.errors.inclination_rms_deg),
+        number(figures.errors.heading_rms_deg),
+        number(figures.errors.max_deg),
         figures.samples,
     );
     if let Some(looks) = &figures.looks {

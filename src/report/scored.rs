@@ -8,13 +8,14 @@ use serde::Serialize;
 pub struct ScoreReport {
     /// The program's version.
     pub version: String,
-    /// Whether every limit held.
+    /// Whether every estimate could be judged and every limit held.
     pub ok: bool,
     /// What did not hold: `estimates.vqf.rms_deg = 1.3 >= 1`.
     pub failed: Vec<String>,
     /// What the estimates were set against.
     pub truth: String,
-    /// What was taken out of each: `none`, or its constant `heading`.
+    /// What was taken out of each: `none`, its constant `heading`, or constant rotations of the `world` or of both
+    /// `frames`.
     pub align: String,
     /// For how long from the truth's start on nothing was judged, s.
     pub settle_s: f64,
@@ -29,9 +30,14 @@ pub struct Scored {
     pub name: String,
     /// The filter, or the file's path.
     pub source: String,
-    /// How far off it is.
+    /// How far off it is, where that can be known.
     #[serde(flatten)]
-    pub figures: Figures,
+    pub figures: Option<Figures>,
+    /// Why it cannot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unknown: Option<String>,
     /// What the user should know of how it was read.
     pub remarks: Vec<String>,
+    /// What explains its error, or would help.
+    pub hints: Vec<String>,
 }

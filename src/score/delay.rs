@@ -1,86 +1,210 @@
-//! How much later than the truth an estimate is, from the motion itself.
+//! How much later than the truth an estimate is, to a microsecond and with its standard error, from the motion itself.
 //!
-//! Against the truth `d` earlier, estimate `i` has the error `e_i(d) = q_i ⊗ q_truth(t_i − d)*` in nav axes. The delay
-//! is the `d` at which the errors scatter least *about their own mean*, so that a constant error (a heading that is
-//! off, a declination) is not taken for a delay: with `v` the mean of the `e_i` as rotations (the eigenvector of the
-//! largest eigenvalue of `Σ e_i e_iᵀ`; Markley et al., *Averaging Quaternions*, JGCD 30(4), 2007), it minimises
-//! `mean |e_i − (v·e_i)·v|²`.
+//! Against the truth `d` earlier, estimate `i` has the error `e_i(d) = q_i ⊗ q_truth(t_i − d)*` in nav axes. Whatever
+//! constant turn of the nav axes it has, two errors a span apart are alike at the right delay: it is the `d` that
+//! minimises the mean of `|log(e_j ⊗ e_i*)|²` over pairs of estimates. A long span averages the noise of an
+//! estimate out, a short one leaves its wander out; of several the one with the least standard error is taken.
 //!
-//! At an even angular rate in nav axes a delay *is* a constant error, and nobody can tell which. Near the minimum
-//! `e_i ≈ v + ω_i·d`, so its standard error is that of a slope: `σ / (sd(ω)·√N)`, with as many independent errors as
-//! their correlation from one to the next leaves.
+//! Where the body's axes are turned as well, rates are compared instead: `r_i = log(q_i* ⊗ q_j)` of estimate and truth,
+//! the one turned by the rotation that brings them together ([`Products::best_turn`]).
+//!
+//! Near the minimum a residual is `r_i ≈ g_i·d`, so the standard error is `√Σ_b (Σ_{i∈b} g_i·r_i)² / Σ|g_i|²` with the
+//! pairs in blocks `b` of a second or more, within which residuals are not independent (H. White, *A
+//! heteroskedasticity-consistent covariance matrix estimator*, Econometrica 48(4), 1980).
 
 use super::sampled::Sampled;
-use crate::geometry::log;
-use glam::{DMat4, DQuat, DVec3, DVec4};
+use super::series::Series;
+use super::turn::Products;
+use crate::geometry::{log, rotate};
+use glam::{DQuat, DVec3};
 use std::ops::Range;
-
-/// An angular rate that varies by less than this tells nothing: 0.2 deg/s.
-const LEAST_RATE: f64 = 0.0035;
-/// A delay whose standard error is above this is not told, s.
-const WORST: f64 = 0.02;
-/// Where the search ends, ns.
-const FINE: i64 = 1000;
-
-/// Estimates with their times, ns.
-pub(super) struct Series {
-    pub times: Vec<i64>,
-    pub attitudes: Vec<DQuat>,
-}
-
-impl Series {
-    /// Every k-th, so that about `count` are left.
-    pub fn thinned(&self, count: usize) -> Series {
-        let every = self.times.len().div_ceil(count).max(1);
-        Series {
-            times: self.times.iter().copied().step_by(every).collect(),
-            attitudes: self.attitudes.iter().copied().step_by(every).collect(),
-        }
-    }
-
-    /// The errors against the truth `delay` earlier, each with the time at which its estimate held.
-    fn errors(&self, truth: At<'_>, delay: i64) -> Vec<(i64, DQuat)> {
-        let held = self.times.iter().map(|t| t.saturating_sub(delay)).zip(&self.attitudes);
-        held.filter_map(|(t, q)| Some((t, *q * truth(t)?.conjugate()))).collect()
-    }
-}
 
 /// The truth at a time in ns, where it is known.
 pub(super) type At<'a> = &'a dyn Fn(i64) -> Option<DQuat>;
+
+/// Between the two estimates of a pair, ns.
+const SPANS: [i64; 4] = [100_000_000, 300_000_000, 1_000_000_000, 3_000_000_000];
+/// Compared as rates, a span turns by no more than this, rad.
+const LEAST_TURN: f64 = 1.0;
+/// Where a search ends, ns.
+const FINE: i64 = 1000;
+/// The step over which the motion's change is taken, ns.
+const SLOPE: i64 = 2_000_000;
+/// Residuals beyond so many times their median count as if they were there: a heading that jumps, a reset.
+const BEYOND: f64 = 6.0;
+/// A motion whose rate changes by less than this says nothing of time, rad/s².
+const LEAST_CHANGE: f64 = 0.003;
+/// A delay whose standard error is above this is not told, ns.
+const WORST: f64 = 20e6;
+/// Of what the estimate turns, the share that the truth has to explain.
+const LEAST_SHARE: f64 = 0.3;
 
 /// The delay that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fit {
     /// ns; positive where the estimate is late.
     pub delay: i64,
+    /// Its standard error, ns.
+    pub error: f64,
     /// Why it should not be believed.
     pub doubt: Option<&'static str>,
 }
 
-/// The delay within `window` (ns), looked for every `step` ns on the grid and then between.
-pub(super) fn find(grid: &Sampled, series: &Series, window: Range<i64>, step: i64) -> Option<Fit> {
-    let on_grid = |t| grid.at(t);
-    let thin = series.thinned(800);
-    let count = (window.end - window.start) / step;
-    let delays: Vec<i64> = (0..=count).map(|i| window.start + i * step).collect();
-    let costs: Vec<f64> =
-        delays.iter().map(|&delay| scatter(&thin, &on_grid, delay).unwrap_or(f64::INFINITY)).collect();
-    let best = least(&delays, &costs)?;
-    if best == 0 || best + 1 == delays.len() {
-        let doubt = "the best agreement lies at the end of what was searched";
-        return Some(Fit {
-            delay: delays[best],
-            doubt: Some(told(grid, &thin, delays[best]).unwrap_or(doubt)),
-        });
-    }
-    let delay = refine(&thin, &on_grid, delays[best - 1]..delays[best + 1]);
-    Some(Fit { delay, doubt: told(grid, &series.thinned(4000), delay) })
+impl Fit {
+    /// None, known without looking.
+    pub const EXACT: Fit = Fit { delay: 0, error: 0.0, doubt: None };
 }
 
-/// The delay within `window`, to a microsecond, by golden sections.
-pub(super) fn refine(series: &Series, truth: At<'_>, window: Range<i64>) -> i64 {
+/// Why no delay follows from a motion.
+pub(super) const TOO_EVEN: &str = "the motion is too even to tell a delay from a constant error";
+const TOO_LOOSE: &str = "the estimate follows the motion too loosely to tell a delay";
+const AT_THE_END: &str = "the best agreement lies at the end of what was searched";
+
+/// Pairs of estimates, compared with the truth.
+pub(super) struct Pairs {
+    /// ns.
+    span: i64,
+    pairs: Vec<[(i64, DQuat); 2]>,
+    /// Whether the body's axes may be turned.
+    free: bool,
+}
+
+impl Pairs {
+    /// About `count` pairs about `span` ns apart.
+    fn new(series: &Series, span: i64, free: bool, count: usize) -> Pairs {
+        let rows: Vec<_> = series.rows().collect();
+        let every = rows.len().div_ceil(count).max(1);
+        let mut other = 0;
+        let mut pairs = Vec::with_capacity(rows.len() / every);
+        for (i, &first) in rows.iter().enumerate().step_by(every) {
+            other = other.max(i + 1);
+            while other < rows.len() && rows[other].0 - first.0 < span {
+                other += 1;
+            }
+            // Rows further apart than the span have it for themselves; a gap has nothing.
+            let Some(&second) = rows.get(other) else { break };
+            let apart = second.0 - first.0;
+            if apart > 0 && (apart <= 2 * span || other == i + 1) {
+                pairs.push([first, second]);
+            }
+        }
+        Pairs { span, pairs, free }
+    }
+
+    /// Both truths of each pair, had the estimates come `delay` late.
+    fn truths(&self, truth: At<'_>, delay: i64) -> Vec<Option<[DQuat; 2]>> {
+        let at = |t: i64| truth(t.saturating_sub(delay));
+        self.pairs.iter().map(|[(a, _), (b, _)]| Some([at(*a)?, at(*b)?])).collect()
+    }
+
+    /// What each pair differs by, rad/s, where there is a truth.
+    fn residuals(&self, truth: At<'_>, delay: i64) -> Vec<Option<DVec3>> {
+        let truths = self.truths(truth, delay);
+        let seconds = |[(a, _), (b, _)]: &[(i64, DQuat); 2]| (b - a) as f64 * 1e-9;
+        if !self.free {
+            let apart = |(pair, truths): (&[(i64, DQuat); 2], &Option<[DQuat; 2]>)| {
+                let [a, b] = (*truths)?;
+                let (first, second) = (pair[0].1 * a.conjugate(), pair[1].1 * b.conjugate());
+                Some(log(second * first.conjugate()) / seconds(pair))
+            };
+            return self.pairs.iter().zip(&truths).map(apart).collect();
+        }
+        let rates: Vec<Option<[DVec3; 2]>> = self
+            .pairs
+            .iter()
+            .zip(&truths)
+            .map(|(pair, truths)| {
+                let [a, b] = (*truths)?;
+                let span = seconds(pair);
+                Some([log(a.conjugate() * b) / span, log(pair[0].1.conjugate() * pair[1].1) / span])
+            })
+            .collect();
+        let mut products = Products::default();
+        rates.iter().flatten().for_each(|[truth, estimate]| products.add(*truth, *estimate));
+        let (turn, _) = products.best_turn();
+        rates.iter().map(|rates| rates.map(|[truth, estimate]| rotate(turn, estimate) - truth)).collect()
+    }
+
+    /// The mean square of the residuals, those beyond `cap` as if they were there; `None` where fewer than half of
+    /// `most` pairs have a truth.
+    fn cost(&self, truth: At<'_>, delay: i64, cap: f64, most: usize) -> Option<f64> {
+        let residuals = self.residuals(truth, delay);
+        let (mut sum, mut count) = (0.0, 0);
+        for r in residuals.into_iter().flatten() {
+            sum += r.length_squared().min(cap * cap);
+            count += 1;
+        }
+        (count >= 2 && 2 * count >= most).then(|| sum / count as f64)
+    }
+
+    /// How many pairs have a truth.
+    fn count(&self, truth: At<'_>, delay: i64) -> usize {
+        self.truths(truth, delay).iter().flatten().count()
+    }
+
+    /// Where residuals end to count in a window, by their medians at its ends: within it, those that only tell that
+    /// the delay is another all count.
+    fn cap(&self, truth: At<'_>, window: &Range<i64>) -> f64 {
+        let ends = [window.start, window.end].map(|delay| self.median(truth, delay));
+        BEYOND * ends[0].max(ends[1]) + 1e-6
+    }
+
+    /// The median size of a residual; infinite where there is none.
+    fn median(&self, truth: At<'_>, delay: i64) -> f64 {
+        let mut sizes: Vec<f64> =
+            self.residuals(truth, delay).iter().flatten().map(|r| r.length()).collect();
+        let middle = sizes.len() / 2;
+        if sizes.is_empty() {
+            return f64::INFINITY;
+        }
+        *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    /// The least cost within a window, to a microsecond, by golden sections.
+    fn refine(&self, truth: At<'_>, window: Range<i64>) -> i64 {
+        let cap = self.cap(truth, &window);
+        let most = self.count(truth, i64::midpoint(window.start, window.end));
+        golden(window, |delay| self.cost(truth, delay, cap, most).unwrap_or(f64::INFINITY))
+    }
+
+    /// The standard error of a delay, ns, and why it should not be believed.
+    fn told(&self, truth: At<'_>, delay: i64) -> (f64, Option<&'static str>) {
+        let cap = BEYOND * self.median(truth, delay) + 1e-6;
+        let [here, before, after] =
+            [0, -SLOPE, SLOPE].map(|step| self.residuals(truth, delay.saturating_add(step)));
+        let (mut blocks, mut block, mut current) = (0.0, 0.0, i64::MIN);
+        let (mut square, mut slopes, mut turned, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for (i, pair) in self.pairs.iter().enumerate() {
+            let (Some(r), Some(a), Some(b)) = (here[i], before[i], after[i]) else { continue };
+            if r.length() > cap {
+                continue;
+            }
+            let slope = (b - a) / (2.0 * SLOPE as f64 * 1e-9);
+            let number = pair[0].0.div_euclid((2 * self.span).max(1_000_000_000));
+            if number != current {
+                blocks += block * block;
+                (block, current) = (0.0, number);
+            }
+            block += slope.dot(r);
+            square += slope.length_squared();
+            slopes += r.length_squared();
+            let span = (pair[1].0 - pair[0].0) as f64 * 1e-9;
+            turned += (log(pair[0].1.conjugate() * pair[1].1) / span).length_squared();
+            count += 1.0;
+        }
+        blocks += block * block;
+        if count < 2.0 || libm::sqrt(square / count) < LEAST_CHANGE {
+            return (f64::INFINITY, Some(TOO_EVEN));
+        }
+        let error = libm::sqrt(blocks) / square * 1e9;
+        let loose = error > WORST || slopes > (1.0 - LEAST_SHARE) * turned;
+        (error, loose.then_some(TOO_LOOSE))
+    }
+}
+
+/// The least of a function with one dip in a window, to a microsecond.
+fn golden(window: Range<i64>, cost: impl Fn(i64) -> f64) -> i64 {
     const GOLDEN: f64 = 0.618_033_988_749_895;
-    let cost = |delay| scatter(series, truth, delay).unwrap_or(f64::INFINITY);
     let (mut low, mut high) = (window.start, window.end);
     let inner = |low: i64, high: i64, share: f64| low + libm::round((high - low) as f64 * share) as i64;
     let (mut a, mut b) = (inner(low, high, 1.0 - GOLDEN), inner(low, high, GOLDEN));
@@ -99,7 +223,63 @@ pub(super) fn refine(series: &Series, truth: At<'_>, window: Range<i64>) -> i64 
     i64::midpoint(low, high)
 }
 
-/// Of the dips that are as deep as the deepest, the one nearest to no delay: a motion that repeats has many.
+/// The delay near one that is known to `reach` ns: with the span that makes it most certain.
+pub(super) fn near(grid: &Sampled, exact: At<'_>, series: &Series, about: i64, reach: i64, free: bool) -> Fit {
+    let on_grid: At<'_> = &|t| grid.at(t);
+    let found = |pairs: &Pairs, about: i64, reach: i64| {
+        let delay = pairs.refine(on_grid, about - reach..about + reach);
+        let (error, doubt) = pairs.told(on_grid, delay);
+        Fit { delay, error, doubt }
+    };
+    let spans = if free { &SPANS[..1] } else { &SPANS[..] };
+    let tried = spans.iter().map(|&span| {
+        let span = limited(grid, span, free);
+        (span, found(&Pairs::new(series, span, free, FEW), about, reach))
+    });
+    let doubtful = |fit: &Fit| (fit.doubt.is_some(), fit.error);
+    let best = tried.min_by(|(_, a), (_, b)| {
+        let ((a, x), (b, y)) = (doubtful(a), doubtful(b));
+        a.cmp(&b).then(x.total_cmp(&y))
+    });
+    let Some((span, fit)) = best else { return Fit { delay: about, error: f64::INFINITY, doubt: Some(TOO_EVEN) } };
+    let pairs = Pairs::new(series, span, free, MANY);
+    let mut fit = found(&pairs, fit.delay, reach / 2);
+    if fit.doubt.is_none() {
+        // The grid's chords are right to microseconds; the truth itself is exact.
+        fit.delay = pairs.refine(exact, fit.delay - reach / 16..fit.delay + reach / 16);
+    }
+    fit
+}
+
+/// As many pairs tell which span is best, and as many the delay.
+const FEW: usize = 400;
+const MANY: usize = 1500;
+
+/// A span over which rates can be compared.
+fn limited(grid: &Sampled, span: i64, free: bool) -> i64 {
+    let least = (LEAST_TURN / grid.fastest().max(1e-3) * 1e9) as i64;
+    if free { span.min(least) } else { span }
+}
+
+/// The delay within `window` (ns), looked for every `step` ns on the grid and then between: of dips that are as
+/// deep, as a motion that repeats has them, the one nearest to none.
+pub(super) fn within(grid: &Sampled, exact: At<'_>, series: &Series, window: Range<i64>, step: i64) -> Option<Fit> {
+    let on_grid: At<'_> = &|t| grid.at(t);
+    let pairs = Pairs::new(series, SPANS[2], false, 800);
+    let count = (window.end - window.start) / step;
+    let delays: Vec<i64> = (0..=count).map(|i| window.start + i * step).collect();
+    let most = delays.iter().step_by(16).map(|&delay| pairs.count(on_grid, delay)).max()?;
+    let cost = |&delay: &i64| pairs.cost(on_grid, delay, f64::INFINITY, most).unwrap_or(f64::INFINITY);
+    let costs: Vec<f64> = delays.iter().map(cost).collect();
+    let best = least(&delays, &costs)?;
+    let mut fit = near(grid, exact, series, delays[best], step, false);
+    if best == 0 || best + 1 == delays.len() {
+        fit.doubt = fit.doubt.or(Some(AT_THE_END));
+    }
+    Some(fit)
+}
+
+/// Of the dips that are as deep as the deepest, the one nearest to no delay.
 fn least(delays: &[i64], costs: &[f64]) -> Option<usize> {
     let finite = || costs.iter().copied().filter(|cost| cost.is_finite());
     let (lowest, highest) = (finite().reduce(f64::min)?, finite().reduce(f64::max)?);
@@ -110,53 +290,4 @@ fn least(delays: &[i64], costs: &[f64]) -> Option<usize> {
         costs[i] <= deep && costs[i] <= cost(i + 1) && (i == 0 || costs[i] <= cost(i - 1))
     };
     (0..costs.len()).filter(is_dip).min_by_key(|&i| delays[i].abs())
-}
-
-/// How much the errors scatter about their mean; `None` where fewer than half of the estimates have a truth.
-fn scatter(series: &Series, truth: At<'_>, delay: i64) -> Option<f64> {
-    let errors = series.errors(truth, delay);
-    if errors.len() < 2 || 2 * errors.len() < series.times.len() {
-        return None;
-    }
-    let mean = mean(&errors);
-    let off = errors.iter().map(|(_, e)| (*e - mean * mean.dot(*e)).length_squared());
-    Some(off.sum::<f64>() / errors.len() as f64)
-}
-
-/// The mean of rotations whose signs are free.
-fn mean(errors: &[(i64, DQuat)]) -> DQuat {
-    let mut sum = DMat4::ZERO;
-    for (_, e) in errors {
-        let e = DVec4::from(*e);
-        sum += DMat4::from_cols(e * e.x, e * e.y, e * e.z, e * e.w);
-    }
-    // Squaring leaves the eigenvector of the largest eigenvalue; its column is as good as any that is not null.
-    for _ in 0..8 {
-        sum = sum * (1.0 / sum.to_cols_array().iter().fold(0.0_f64, |most, x| most.max(x.abs())));
-        sum = sum * sum;
-    }
-    let columns = [sum.x_axis, sum.y_axis, sum.z_axis, sum.w_axis];
-    let longest = columns.into_iter().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
-    DQuat::from_vec4(longest.unwrap_or(DVec4::W)).normalize()
-}
-
-/// Why a delay should not be believed, if there is a reason.
-fn told(grid: &Sampled, series: &Series, delay: i64) -> Option<&'static str> {
-    let errors = series.errors(&|t| grid.at(t), delay);
-    let rates: Vec<DVec3> = errors.iter().filter_map(|(t, _)| grid.rate(*t)).collect();
-    let mean_rate = rates.iter().sum::<DVec3>() / rates.len().max(1) as f64;
-    let variance = rates.iter().map(|rate| (*rate - mean_rate).length_squared()).sum::<f64>();
-    let sd = libm::sqrt(variance / rates.len().max(1) as f64);
-    if sd < LEAST_RATE {
-        return Some("the motion is too even to tell a delay from a constant error");
-    }
-    let mean = mean(&errors);
-    let off: Vec<DVec3> = errors.iter().map(|(_, e)| log(*e * mean.conjugate())).collect();
-    let square = off.iter().map(|v| v.length_squared()).sum::<f64>();
-    let next = off.windows(2).map(|pair| pair[0].dot(pair[1])).sum::<f64>();
-    let alike = if square > 0.0 { (next / square).clamp(0.0, 0.999) } else { 0.0 };
-    let independent = (off.len() as f64 * (1.0 - alike) / (1.0 + alike)).max(1.0);
-    let sigma = libm::sqrt(square / 3.0 / off.len().max(1) as f64);
-    (sigma / (sd * libm::sqrt(independent)) > WORST)
-        .then_some("the estimate follows the motion too loosely to tell a delay")
 }

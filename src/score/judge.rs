@@ -1,17 +1,19 @@
 //! A whole series of estimates against the truth.
 
-use super::delay::{self, Fit, Series};
-use super::looks::{ALIKE, BAD, MISTAKES, SHARE, heading_offset, turned_back};
-use super::sampled::Sampled;
-use super::{AttitudeError, clock, offset};
+use super::align::{Align, Frames};
+use super::bench::{Bench, STEP};
+use super::figures::{DelayKnown, Errors, Figures, Fitted};
+use super::looks::{ALIKE, BAD, MISTAKES, SHARE};
+use super::place::{self, Clock, Placed, Undone};
+use super::series::Series;
+use super::stamped::Stamped;
+use super::{Aligned, AttitudeError};
 use crate::geometry::{Attitude, Axes};
 use crate::time::SimTime;
 use glam::DQuat;
-use serde::Serialize;
-use std::ops::Range;
 
-/// The truth as a function of time.
-pub type Truth<'a> = &'a dyn Fn(SimTime) -> Attitude;
+/// The truth as a function of time; `None` where it is not known.
+pub type Truth<'a> = &'a dyn Fn(SimTime) -> Option<Attitude>;
 
 /// What is known of the time at which an estimate held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,24 +37,18 @@ pub struct Timed {
     pub attitude: Attitude,
 }
 
-/// What is taken out of the estimates before they are judged.
+/// What becomes of a delay on the truth's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Align {
-    /// Nothing.
+pub enum Delay {
+    /// It is taken out where it can be found; what the estimates are as they arrived is told beside.
     #[default]
-    None,
-    /// One constant turn about the vertical: what an estimator without a magnetometer cannot know.
-    Heading,
-}
-
-/// What clock `arrival` is a time of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Clock {
-    /// The scene's: an estimate is late by its delay, from half a second early to two seconds late.
-    #[default]
-    Scene,
-    /// One of which nothing is known: a log since some boot. [`Options::until`] has to be finite.
-    Foreign,
+    TakeOut,
+    /// It is left in; what they are without it is told beside.
+    Keep,
+    /// As [`Delay::Keep`], and rows and charts are without it: where it cannot be found nothing is judged.
+    Fit,
+    /// As [`Delay::Fit`], and it is so many ns.
+    Given(i64),
 }
 
 /// How to judge.
@@ -62,10 +58,16 @@ pub struct Options {
     pub align: Align,
     /// Which clock.
     pub clock: Clock,
-    /// From when on the truth is known and estimates count.
+    /// What becomes of a delay.
+    pub delay: Delay,
+    /// From when on the truth is known.
     pub from: SimTime,
     /// Until when.
     pub until: SimTime,
+    /// For how long before that the vehicle was held still as it is then.
+    pub rest: SimTime,
+    /// For how long from `from` on estimates do not count.
+    pub settle: SimTime,
     /// The axes in which the estimates were written before they were read, and in which mistakes were made.
     pub axes: Axes,
 }
@@ -74,62 +76,15 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             align: Align::None,
-            clock: Clock::Scene,
+            clock: Clock::Truth,
+            delay: Delay::TakeOut,
             from: SimTime::ZERO,
             until: SimTime::FOREVER,
+            rest: SimTime::ZERO,
+            settle: SimTime::ZERO,
             axes: Axes::NedFrd,
         }
     }
-}
-
-/// How the delay is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum DelayKnown {
-    /// The time of the sample was echoed.
-    Echoed,
-    /// By where the motion agrees best.
-    Estimated,
-    /// It is not.
-    Unknown,
-}
-
-/// What a series of estimates amounts to; errors are those at the time at which each held.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Figures {
-    /// How many estimates were judged.
-    pub samples: u64,
-    /// Root mean square of the whole error.
-    pub rms_deg: f64,
-    /// The largest whole error.
-    pub max_deg: f64,
-    /// Root mean square of the tilt.
-    pub inclination_rms_deg: f64,
-    /// The largest tilt.
-    pub inclination_max_deg: f64,
-    /// Root mean square of the turn about the vertical.
-    pub heading_rms_deg: f64,
-    /// The largest turn about the vertical.
-    pub heading_max_deg: f64,
-    /// How much later than it held an estimate came, the median where it is known of each.
-    pub delay_ms: Option<f64>,
-    /// How it is known.
-    pub delay_known: DelayKnown,
-    /// Why it is not.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub delay_doubt: Option<&'static str>,
-    /// How much the estimates' own clock was ahead of the scene's, delay included, where it is another.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub clock_offset_s: Option<f64>,
-    /// The constant heading that was taken out.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub heading_offset_deg: Option<f64>,
-    /// The mistake that explains a large error: `NED/ENU swapped`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub looks: Option<String>,
-    /// What the root mean square would be without it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub looks_rms_deg: Option<f64>,
 }
 
 /// One estimate that was judged.
@@ -139,255 +94,214 @@ pub struct Row {
     pub t: SimTime,
     /// What it said, less what was taken out.
     pub attitude: Attitude,
-    /// How far that is from the truth.
+    /// The truth then.
+    pub truth: Attitude,
+    /// How far the one is from the other.
     pub error: AttitudeError,
 }
 
-/// A series of estimates with its figures.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
-    /// The figures.
-    pub figures: Figures,
-    /// Each estimate, in the order given.
-    pub rows: Vec<Row>,
+/// Why estimates cannot be judged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unjudged {
+    /// None of them is at a time at which the truth is known and estimates count.
+    #[error("no estimate is at a time at which the truth is known")]
+    NoTruth,
+    /// It is not known when they held.
+    #[error("{0}")]
+    When(String),
 }
+
+/// A series of estimates that was judged.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// What it amounts to.
+    pub figures: Figures,
+    /// What the user should know of its clock.
+    pub note: Option<String>,
+    /// A constant rotation that explains most of a large error, and the root mean square without it, deg.
+    pub turned: Option<(Aligned, f64)>,
+    /// When each estimate given to [`judge`] held, as far as that is known.
+    pub held: Vec<SimTime>,
+    series: Series,
+    options: Options,
+    ahead: i64,
+    frames: Frames,
+}
+
+impl Judged {
+    /// Each estimate that has a truth, in the order given, with its error: on the truth's own clock as given, unless
+    /// the delay was asked to be taken out.
+    pub fn rows(&self, truth: Truth<'_>, mut each: impl FnMut(Row)) {
+        let options = self.options;
+        if let Some(bench) = Bench::new(truth, &self.series, options, false) {
+            bench.rows(&self.series, self.ahead, self.frames).for_each(&mut each);
+        }
+    }
+}
+
+/// Other ways to read the same estimates, each with what it would mean: `in degrees read as radians`.
+pub type Readings<'a> = &'a [(&'static str, Series)];
 
 /// Judges the estimates of one source. Those whose stamps are not of the kind that most have are left out, and so are
 /// those for which there is no truth.
 ///
-/// `None` where none is left.
-pub fn judge(truth: Truth<'_>, estimates: &[Timed], options: &Options) -> Option<Judged> {
-    judge_readings(truth, estimates, &[], options)
+/// # Errors
+/// None is left, or nothing tells when they held.
+pub fn judge(truth: Truth<'_>, estimates: &[Timed], options: &Options) -> Result<Judged, Unjudged> {
+    let stamped = Stamped::of(estimates);
+    let series = stamped.series(|i| estimates[i].attitude);
+    let clock = if stamped.is_echoed { Clock::Sample } else { options.clock };
+    let mut judged = judge_series(truth, series, &[], &Options { clock, ..*options })?;
+    let figures = &mut judged.figures;
+    let delay = figures.delay_ms.map_or(0, |ms| libm::round(ms * 1e6) as i64);
+    if figures.delay_known != DelayKnown::Unknown && figures.clock_offset_s.is_none() {
+        figures.delay_ms = stamped.delay_ms(estimates, delay);
+    }
+    judged.held = stamped.held(estimates, delay);
+    Ok(judged)
 }
 
-/// [`judge`] for estimates that can be read in other ways, each with what it would mean: `in degrees read as radians`.
-/// If the reading given is far off and one of the others is not, that is named.
-pub fn judge_readings(
+/// [`judge`] for a series whose times are all that is known of it, and which may be read in other ways: if the reading
+/// given is far off and one of the others is not, that is named.
+///
+/// # Errors
+/// As of [`judge`].
+pub fn judge_series(
     truth: Truth<'_>,
-    estimates: &[Timed],
-    others: &[(&'static str, Vec<Attitude>)],
+    series: Series,
+    others: Readings<'_>,
     options: &Options,
-) -> Option<Judged> {
-    let stamped = Stamped::of(estimates);
-    let bench = Bench::new(truth, &stamped.times, stamped.is_echoed, *options)?;
-    let series = |attitude: &dyn Fn(usize) -> Attitude| Series {
-        times: stamped.times.clone(),
-        attitudes: stamped.of.iter().map(|&i| attitude(i).q.normalize()).collect(),
+) -> Result<Judged, Unjudged> {
+    let is_echoed = options.clock == Clock::Sample;
+    let bench = Bench::new(truth, &series, *options, !is_echoed).ok_or(Unjudged::NoTruth)?;
+    let undone = undoings(&series, others, options.axes);
+    let placed = place::place(&bench, &series, &undone).map_err(Unjudged::When)?;
+    let Some((mut figures, ahead, frames)) = figures(&bench, &series, &placed)? else {
+        return Err(Unjudged::NoTruth);
     };
-    let given = series(&|i| estimates[i].attitude);
-    let placed = bench.place(&given)?;
-    let mut judged = bench.judged(&given, &placed)?;
-    judged.figures.delay_ms = match placed.known {
-        DelayKnown::Unknown => None,
-        _ if options.clock == Clock::Foreign => None,
-        _ => stamped.delay_ms(estimates, placed.delay),
-    };
-    if judged.figures.rms_deg.to_radians() > BAD {
-        let others = others.iter().filter(|(_, attitudes)| attitudes.len() == estimates.len());
-        let others = others.map(|(name, attitudes)| (*name, series(&|i| attitudes[i]).thinned(LOOK)));
-        let undone = |undo: fn(DQuat) -> DQuat| {
-            let Series { times, attitudes } = given.thinned(LOOK);
-            let axes = options.axes;
-            let undo = |q| axes.attitude_in(undo(axes.attitude_out(Attitude::from_quat(q)))).q;
-            Series { times, attitudes: attitudes.into_iter().map(undo).collect() }
-        };
-        let mistakes = MISTAKES.iter().map(|mistake| (mistake.name, undone(mistake.undo)));
-        bench.look(others.chain(mistakes).collect(), &mut judged.figures);
+    let mut turned = None;
+    if figures.errors.rms_deg.to_radians() > BAD {
+        look(&bench, &undone, &placed, ahead, &mut figures);
     }
-    Some(judged)
+    if figures.looks.is_none() && options.align == Align::None {
+        turned = turned_frames(&bench, &series, ahead, figures.errors.rms_deg);
+    }
+    drop((bench, undone));
+    Ok(Judged { figures, note: placed.note, turned, held: Vec::new(), options: *options, ahead, frames, series })
+}
+
+/// The figures, at how much the times are ahead in them, and what was taken out.
+fn figures(
+    bench: &Bench<'_>,
+    series: &Series,
+    placed: &Placed,
+) -> Result<Option<(Figures, i64, Frames)>, Unjudged> {
+    let align = bench.options.align;
+    let is_echoed = bench.options.clock == Clock::Sample;
+    let at = |ahead: i64| {
+        let frames = bench.frames(series, ahead, align);
+        bench.errors(series, ahead, frames).map(|errors| (errors, ahead, frames))
+    };
+    let found = placed.delay.filter(|fit| fit.doubt.is_none());
+    let doubt = placed.delay.map_or(Some("no part of the motion is in both"), |fit| fit.doubt);
+    let out = match bench.options.delay {
+        _ if placed.other => None,
+        Delay::Given(ns) => Some((ns, None)),
+        Delay::Fit if found.is_none() => {
+            return Err(Unjudged::When(format!("its delay cannot be found: {}", doubt.unwrap_or_default())));
+        }
+        _ => found.map(|fit| (fit.delay, Some(fit.error))),
+    };
+    let given = at(placed.ahead);
+    let without = out.and_then(|(delay, error)| Some((at(delay)?, error)));
+    let takes_out = bench.options.delay == Delay::TakeOut && without.is_some();
+    let Some(main) = (if takes_out { without.map(|(it, _)| it) } else { given }) else { return Ok(None) };
+    let ((errors, samples, coverage), mut ahead, mut frames) = main;
+    let fitted = without.filter(|_| !takes_out && !is_echoed).map(|(((errors, ..), delay, _), error)| Fitted {
+        delay_ms: delay as f64 * 1e-6,
+        delay_std_ms: error.map(|ns| ns * 1e-6),
+        errors,
+    });
+    if let (Delay::Fit | Delay::Given(_), Some(((_, delay, without), _))) = (bench.options.delay, without) {
+        (ahead, frames) = (delay, without);
+    }
+    let known = match (is_echoed, bench.options.delay, out.is_some()) {
+        (true, ..) => DelayKnown::Echoed,
+        (_, Delay::Given(_), true) => DelayKnown::Given,
+        (_, _, true) => DelayKnown::Estimated,
+        _ => DelayKnown::Unknown,
+    };
+    let as_arrived = given.filter(|_| takes_out && !is_echoed).map(|((errors, ..), ..)| errors);
+    let figures = Figures {
+        samples,
+        errors,
+        fitted,
+        as_arrived: as_arrived.filter(|as_arrived: &Errors| *as_arrived != errors),
+        delay_ms: out.map(|(ns, _)| ns as f64 * 1e-6),
+        delay_known: known,
+        delay_doubt: doubt.filter(|_| known == DelayKnown::Unknown && !placed.other),
+        clock_offset_s: placed.other.then_some(placed.ahead as f64 * 1e-9),
+        clock_std_ms: placed.error.filter(|ns| ns.is_finite()).map(|ns| ns * 1e-6),
+        clock_certain: placed.certain,
+        coverage,
+        aligned: (align != Align::None).then(|| frames.angles()),
+        heading_offset_deg: (align == Align::Heading).then(|| frames.angles().heading_deg),
+        looks: None,
+        looks_rms_deg: None,
+    };
+    Ok(Some((figures, ahead, frames)))
+}
+
+/// Each mistake with what undoes it.
+fn undoings<'a>(series: &'a Series, others: Readings<'a>, axes: Axes) -> Vec<Undone<'a>> {
+    let others = others.iter().filter(|(_, other)| other.len() == series.len());
+    let others = others.map(|(name, other)| Undone { name, thinned: Box::new(|count| other.thinned(count)) });
+    let mistakes = MISTAKES.iter().map(move |mistake| {
+        let undo = move |q: DQuat| axes.attitude_in((mistake.undo)(axes.attitude_out(Attitude::from_quat(q)))).q;
+        Undone { name: mistake.name, thinned: Box::new(move |count| series.thinned(count).map(undo)) }
+    });
+    others.chain(mistakes).collect()
 }
 
 /// As many estimates are looked through for mistakes.
 const LOOK: usize = 300;
 
-/// The estimates that count, by number, each with a time on one clock.
-struct Stamped {
-    of: Vec<usize>,
-    times: Vec<i64>,
-    is_echoed: bool,
+/// Names the mistake that explains a large error, if there is one.
+fn look(bench: &Bench<'_>, undone: &[Undone<'_>], placed: &Placed, ahead: i64, figures: &mut Figures) {
+    let is_searched = bench.grid.rows().next().is_some() && !placed.other;
+    let rms = |undone: &Undone<'_>| {
+        let undone = (undone.thinned)(LOOK);
+        let fit = if is_searched { bench.coarse_delay(&undone, 5 * STEP) } else { None };
+        let delay = fit.filter(|fit| fit.doubt.is_none()).map(|fit| fit.delay);
+        bench.rms(&undone, delay.unwrap_or(ahead))
+    };
+    let tried: Vec<(&str, f64)> = undone.iter().filter_map(|it| Some((it.name, rms(it)?))).collect();
+    let Some(best) = tried.iter().map(|(_, rms)| *rms).reduce(f64::min) else { return };
+    if best > BAD || best > SHARE * figures.errors.rms_deg.to_radians() {
+        return;
+    }
+    let alike = tried.iter().filter(|(_, rms)| *rms <= ALIKE.0 * best + ALIKE.1);
+    let names: Vec<&str> = alike.map(|(name, _)| *name).take(3).collect();
+    figures.looks = Some(names.join(" or "));
+    figures.looks_rms_deg = Some(best.to_degrees());
 }
 
-impl Stamped {
-    fn of(estimates: &[Timed]) -> Stamped {
-        let kind = |stamp: Stamp| match stamp {
-            Stamp::Sample(_) => 0,
-            Stamp::Own(_) => 1,
-            Stamp::Arrival => 2,
-        };
-        let count = |of: usize| estimates.iter().filter(|estimate| kind(estimate.stamp) == of).count();
-        let most = (0..3).max_by_key(|&of| (count(of), 2 - of)).unwrap_or(0);
-        let is_good = |estimate: &Timed| {
-            estimate.attitude.q.is_finite() && (0.5..2.0).contains(&estimate.attitude.q.length())
-        };
-        let counts = |i: &usize| kind(estimates[*i].stamp) == most && is_good(&estimates[*i]);
-        let of: Vec<usize> = (0..estimates.len()).filter(counts).collect();
-        let arrivals: Vec<i64> = of.iter().map(|&i| estimates[i].arrival.0).collect();
-        let stamp = |&i: &usize| match estimates[i].stamp {
-            Stamp::Sample(t) => t.0,
-            Stamp::Own(t) => t,
-            Stamp::Arrival => estimates[i].arrival.0,
-        };
-        let stamps: Vec<i64> = of.iter().map(stamp).collect();
-        let times = if most == 1 { clock::onto_ours(&stamps, &arrivals).unwrap_or(arrivals) } else { stamps };
-        Stamped { of, times, is_echoed: most == 0 }
+/// An error larger than this may be looked through for a constant rotation, deg RMS.
+const TURNED: f64 = 1.0;
+
+/// The constant rotations that explain an error: of the world alone if that does as well.
+fn turned_frames(bench: &Bench<'_>, series: &Series, ahead: i64, rms_deg: f64) -> Option<(Aligned, f64)> {
+    if rms_deg < TURNED {
+        return None;
     }
-
-    /// The median of arrival less when it held.
-    fn delay_ms(&self, estimates: &[Timed], delay: i64) -> Option<f64> {
-        let late = |(&i, &t): (&usize, &i64)| estimates[i].arrival.0 - (t - delay);
-        let mut delays: Vec<i64> = self.of.iter().zip(&self.times).map(late).collect();
-        delays.sort_unstable();
-        delays.get(delays.len() / 2).map(|&ns| ns as f64 * 1e-6)
-    }
-}
-
-/// Where a series lies in time.
-struct Placed {
-    delay: i64,
-    known: DelayKnown,
-    doubt: Option<&'static str>,
-}
-
-/// The truth and what is asked of it.
-struct Bench<'a> {
-    truth: Truth<'a>,
-    options: Options,
-    is_echoed: bool,
-    grid: Sampled,
-}
-
-/// The delays that are looked for, ns.
-const DELAYS: Range<i64> = -500_000_000..2_000_000_000;
-/// How finely: a motion of 60 Hz still has its dip between.
-const STEP: i64 = 4_000_000;
-
-impl Bench<'_> {
-    /// `None` where there is nothing to judge.
-    fn new<'a>(truth: Truth<'a>, times: &[i64], is_echoed: bool, options: Options) -> Option<Bench<'a>> {
-        let (first, last) = (*times.iter().min()?, *times.iter().max()?);
-        let (mut from, mut until) = (options.from.0, options.until.0);
-        if options.clock == Clock::Scene {
-            from = from.max(first.saturating_sub(DELAYS.end));
-            until = until.min(last.saturating_sub(DELAYS.start));
-        }
-        let grid = if is_echoed { Sampled::new(truth, 0, -1) } else { Sampled::new(truth, from, until) };
-        Some(Bench { truth, options, is_echoed, grid })
-    }
-
-    fn at(&self, t: i64) -> Option<DQuat> {
-        let t = SimTime(t);
-        (self.options.from <= t && t <= self.options.until).then(|| (self.truth)(t).q)
-    }
-
-    /// When the estimates of a series held.
-    fn place(&self, series: &Series) -> Option<Placed> {
-        if self.is_echoed {
-            return Some(Placed { delay: 0, known: DelayKnown::Echoed, doubt: None });
-        }
-        let Some(mut fit) = self.fit(series, STEP) else {
-            return Some(Placed {
-                delay: self.fallback(series)?,
-                known: DelayKnown::Unknown,
-                doubt: Some("no part of the motion is in both"),
-            });
-        };
-        if fit.doubt.is_some() {
-            // What cannot be told is not guessed: as the times are given, or for a clock of its own as found.
-            let delay = if self.options.clock == Clock::Scene { 0 } else { fit.delay };
-            return Some(Placed { delay, known: DelayKnown::Unknown, doubt: fit.doubt });
-        }
-        let near = fit.delay - STEP..fit.delay + STEP;
-        fit.delay = delay::refine(&series.thinned(4000), &|t| self.at(t), near);
-        Some(Placed { delay: fit.delay, known: DelayKnown::Estimated, doubt: None })
-    }
-
-    fn fit(&self, series: &Series, step: i64) -> Option<Fit> {
-        match self.options.clock {
-            Clock::Scene => delay::find(&self.grid, series, DELAYS, step),
-            Clock::Foreign => {
-                let span = self.options.from.0..self.options.until.0;
-                let (offset, width) = offset::find(&self.grid, span, series)?;
-                let reach = 250_000_000.max(2 * width);
-                delay::find(&self.grid, series, offset - reach..offset + reach, step)
-            }
-        }
-    }
-
-    /// Where nothing better is known: the times as given; on a clock of its own the first estimate at the first truth,
-    /// which is right of a vehicle at rest and of no other.
-    fn fallback(&self, series: &Series) -> Option<i64> {
-        match self.options.clock {
-            Clock::Scene => Some(0),
-            Clock::Foreign if self.grid.is_still() => Some(series.times.first()? - self.options.from.0),
-            Clock::Foreign => None,
-        }
-    }
-
-    fn judged(&self, series: &Series, placed: &Placed) -> Option<Judged> {
-        let held = series.times.iter().map(|t| t.saturating_sub(placed.delay)).zip(&series.attitudes);
-        let known: Vec<(SimTime, DQuat, DQuat)> =
-            held.filter_map(|(t, q)| Some((SimTime(t), *q, self.at(t)?))).collect();
-        let heading = match self.options.align {
-            Align::None => 0.0,
-            Align::Heading => heading_offset(known.iter().map(|(_, q, truth)| *q * truth.conjugate())),
-        };
-        let row = |&(t, q, truth): &(SimTime, DQuat, DQuat)| {
-            let attitude = turned_back(Attitude::from_quat(q), heading);
-            Row { t, attitude, error: AttitudeError::between(Attitude::from_quat(truth), attitude) }
-        };
-        let rows: Vec<Row> = known.iter().map(row).collect();
-        if rows.is_empty() {
-            return None;
-        }
-        let of = |part: fn(&AttitudeError) -> f64| {
-            let squares: f64 = rows.iter().map(|row| part(&row.error) * part(&row.error)).sum();
-            let max = rows.iter().map(|row| part(&row.error).abs()).fold(0.0, f64::max);
-            (libm::sqrt(squares / rows.len() as f64).to_degrees(), max.to_degrees())
-        };
-        let (rms_deg, max_deg) = of(|error| error.total);
-        let (inclination_rms_deg, inclination_max_deg) = of(|error| error.inclination);
-        let (heading_rms_deg, heading_max_deg) = of(|error| error.heading);
-        let is_foreign = self.options.clock == Clock::Foreign;
-        let figures = Figures {
-            samples: rows.len() as u64,
-            rms_deg,
-            max_deg,
-            inclination_rms_deg,
-            inclination_max_deg,
-            heading_rms_deg,
-            heading_max_deg,
-            delay_ms: None,
-            delay_known: if is_foreign { DelayKnown::Unknown } else { placed.known },
-            delay_doubt: placed.doubt,
-            clock_offset_s: is_foreign.then_some(placed.delay as f64 * 1e-9),
-            heading_offset_deg: (self.options.align == Align::Heading).then_some(heading.to_degrees()),
-            looks: None,
-            looks_rms_deg: None,
-        };
-        Some(Judged { figures, rows })
-    }
-
-    /// Names the mistake that explains a large error, if there is one.
-    fn look(&self, candidates: Vec<(&'static str, Series)>, figures: &mut Figures) {
-        let rms = |series: &Series| {
-            let fit = self.fit(series, 5 * STEP).filter(|fit| fit.doubt.is_none());
-            let delay = match fit {
-                _ if self.is_echoed => 0,
-                Some(fit) => fit.delay,
-                None => self.fallback(series)?,
-            };
-            let placed = Placed { delay, known: DelayKnown::Unknown, doubt: None };
-            Some(self.judged(series, &placed)?.figures.rms_deg.to_radians())
-        };
-        let tried: Vec<(&str, f64)> =
-            candidates.iter().filter_map(|(name, series)| Some((*name, rms(series)?))).collect();
-        let Some(best) = tried.iter().map(|(_, rms)| *rms).reduce(f64::min) else { return };
-        if best > BAD || best > SHARE * figures.rms_deg.to_radians() {
-            return;
-        }
-        let alike = tried.iter().filter(|(_, rms)| *rms <= ALIKE.0 * best + ALIKE.1);
-        let names: Vec<&str> = alike.map(|(name, _)| *name).take(3).collect();
-        figures.looks = Some(names.join(" or "));
-        figures.looks_rms_deg = Some(best.to_degrees());
-    }
+    let thin = series.thinned(LOOK * 10);
+    let without = |align: Align| {
+        let frames = bench.frames(&thin, ahead, align);
+        let (errors, ..) = bench.errors(&thin, ahead, frames)?;
+        Some((frames.angles(), errors.rms_deg))
+    };
+    let tried = [Align::Heading, Align::World, Align::Frames].map(without);
+    let best = tried.iter().flatten().map(|(_, rms)| *rms).reduce(f64::min)?;
+    let simplest = tried.into_iter().flatten().find(|(_, rms)| *rms <= 1.2 * best + 0.02)?;
+    (simplest.1 < SHARE * rms_deg).then_some(simplest)
 }

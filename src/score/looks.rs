@@ -1,6 +1,6 @@
 //! The usual mistakes of axes, order and sign: each undone on an estimate that is far off, to see whether it is one.
 
-use crate::geometry::{Attitude, Axes, Euler, exp};
+use crate::geometry::{Axes, Euler, exp};
 use glam::{DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -61,17 +61,4 @@ fn euler(q: DQuat, undo: fn(Euler) -> Euler) -> DQuat {
 
 fn to_degrees(a: Euler) -> Euler {
     Euler { roll: a.roll.to_degrees(), pitch: a.pitch.to_degrees(), yaw: a.yaw.to_degrees() }
-}
-
-/// The constant turn about the vertical that brings estimates nearest to the truth, rad, and is to be taken out:
-/// the `ψ` that maximises `Σ (e_w·cos(ψ/2) + e_z·sin(ψ/2))²`.
-pub(super) fn heading_offset(errors: impl Iterator<Item = DQuat>) -> f64 {
-    let (sine, cosine) =
-        errors.fold((0.0, 0.0), |(s, c), e| (s + 2.0 * e.w * e.z, c + e.w * e.w - e.z * e.z));
-    libm::atan2(sine, cosine)
-}
-
-/// An attitude turned back by a heading.
-pub(super) fn turned_back(attitude: Attitude, heading: f64) -> Attitude {
-    Attitude::from_quat(turn(DVec3::Z, -heading) * attitude.q)
 }

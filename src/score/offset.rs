@@ -1,60 +1,153 @@
 //! Two clocks that have nothing in common, brought together by the motion.
 //!
-//! The size of the angular rate is the same in any axes, whatever the order or sign of the quaternion, so the time at
-//! which both say the same is found before anything else is known: by the correlation coefficient at every lag.
+//! The angular rates of truth and estimate are compared at every lag at which they overlap ([`Sums`]). The best lag
+//! is that at which the truth tells most of the estimate, in nats: a long overlap that agrees well. It is believed if
+//! it tells much, explains most of what both turned, and no other lag that tells a fair part of that agrees nearly
+//! as well: a motion that repeats agrees with itself a period later.
 
-use super::delay::Series;
+use super::correlate::{Alike, Sums};
+use super::rates::Rates;
 use super::sampled::Sampled;
-use crate::geometry::angle_between;
+use super::series::Series;
 use std::ops::Range;
 
-/// Even steps on which rates are compared: at least this, ns.
+/// A cell of the grid: at least this, ns.
 const STEP: i64 = 20_000_000;
-/// The most steps of the longer of the two.
-const STEPS: i64 = 4096;
-/// Less than this is no agreement.
-const LEAST: f64 = 0.5;
+/// The most cells of the longer of the two.
+const CELLS: i64 = 1 << 18;
+/// Rates are means over so many cells, the second for an estimate with more noise.
+const WIDTHS: [usize; 2] = [5, 25];
+/// Rows further apart than this say nothing of what is between, ns; and than so many of the median interval.
+const GAP: (i64, i64) = (250_000_000, 5);
+/// The truth has to tell so much of the estimate, in nats at 50 cells a second.
+const LEAST_INFORMATION: f64 = 300.0;
+/// And has to explain this share of what both turned.
+const LEAST_SHARE: f64 = 0.5;
+/// Another lag counts if it tells this share of what the best does,
+const RIVAL_INFORMATION: f64 = 0.25;
+/// and is apart by less than so many times what the best is.
+const RIVAL_APART: f64 = 2.0;
+/// The overlap is this share of the shorter of the two at the least.
+const LEAST_OVERLAP: f64 = 0.1;
+/// Of rivals as many are kept.
+const RIVALS: usize = 64;
 
-/// How much the clock of `series` is ahead of the truth's, to about the second value, ns; `None` where the rates do
-/// not agree anywhere, or do not vary.
-pub(super) fn find(grid: &Sampled, truth: Range<i64>, series: &Series) -> Option<(i64, i64)> {
-    let (&first, &last) = (series.times.first()?, series.times.last()?);
-    let step = STEP.max((truth.end - truth.start).max(last - first) / STEPS);
-    let ours = rates(truth.clone(), step, |t| grid.at(t));
-    let mut near = 0;
-    let theirs = rates(first..last, step, |t| {
-        while near + 1 < series.times.len() && series.times[near + 1] <= t {
-            near += 1;
+/// Where two clocks agree best.
+#[derive(Clone, Debug)]
+pub(super) struct Match {
+    /// How much the estimate's clock is ahead of the truth's, ns.
+    pub offset: i64,
+    /// To about how much, ns.
+    pub width: i64,
+    /// Whether the body's axes had to be turned.
+    pub free: bool,
+    /// Other offsets at which the motion agrees about as well, ns, the nearest to [`Match::offset`] first.
+    pub rivals: Vec<i64>,
+    /// Why it should not be believed.
+    pub doubt: Option<Doubt>,
+}
+
+/// Why a match should not be believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Doubt {
+    /// One of the two never turns, or so evenly that any time is as good.
+    TooEven,
+    /// Nowhere does the one follow the other.
+    Unlike,
+    /// Several offsets agree about as well.
+    Repeats,
+}
+
+/// The best match over every offset; `None` where there is nothing to compare.
+pub(super) fn find(truth: &Sampled, series: &Series) -> Option<Match> {
+    let mut best: Option<Match> = None;
+    for width in WIDTHS {
+        let Some((truth, estimate)) = rates(truth, series, width) else { continue };
+        let sums = Sums::new(&truth, &estimate);
+        for free in [false, true] {
+            let found = of_sums(&sums, &truth, &estimate, free)?;
+            if found.doubt.is_none() {
+                return Some(found);
+            }
+            let better = |best: &Match| rank(found.doubt) > rank(best.doubt);
+            if best.as_ref().is_none_or(better) {
+                best = Some(found);
+            }
         }
-        let (a, b) = (near, (near + 1).min(series.times.len() - 1));
-        let gap = series.times[b] - series.times[a];
-        let share = if gap > 0 { (t - series.times[a]) as f64 / gap as f64 } else { 0.0 };
-        Some(series.attitudes[a].slerp(series.attitudes[b], share.clamp(0.0, 1.0)))
-    });
-    let least = (ours.len().min(theirs.len()) / 2).max(8) as i64;
-    let lags = least - theirs.len() as i64..=ours.len() as i64 - least;
-    let (lag, best) = lags
-        .filter_map(|lag| Some((lag, correlation(&ours, &theirs, lag)?)))
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (best >= LEAST).then(|| (first - truth.start - lag * step, step))
-}
-
-/// The mean size of the angular rate over each step, rad/s.
-fn rates(span: Range<i64>, step: i64, mut at: impl FnMut(i64) -> Option<glam::DQuat>) -> Vec<f64> {
-    let attitudes: Vec<_> =
-        (0..=(span.end - span.start) / step).filter_map(|i| at(span.start + i * step)).collect();
-    attitudes.windows(2).map(|pair| angle_between(pair[0], pair[1]) / (step as f64 * 1e-9)).collect()
-}
-
-/// Of `ours[i + lag]` and `theirs[i]` where there are both.
-fn correlation(ours: &[f64], theirs: &[f64], lag: i64) -> Option<f64> {
-    let skip = |n: i64| usize::try_from(n.max(0)).unwrap_or(usize::MAX);
-    let pairs = || ours.iter().skip(skip(lag)).zip(theirs.iter().skip(skip(-lag)));
-    let n = pairs().count() as f64;
-    let [mut a, mut b, mut aa, mut bb, mut ab] = [0.0; 5];
-    for (x, y) in pairs() {
-        (a, b, aa, bb, ab) = (a + x, b + y, aa + x * x, bb + y * y, ab + x * y);
     }
-    let (va, vb) = (aa - a * a / n, bb - b * b / n);
-    (va > 1e-9 * n && vb > 1e-9 * n).then(|| (ab - a * b / n) / libm::sqrt(va * vb))
+    best
+}
+
+/// What is known more of is kept.
+fn rank(doubt: Option<Doubt>) -> u8 {
+    match doubt {
+        None => 3,
+        Some(Doubt::Repeats) => 2,
+        Some(Doubt::Unlike) => 1,
+        Some(Doubt::TooEven) => 0,
+    }
+}
+
+/// Both's rates, on a grid that neither is too coarse nor too long for.
+fn rates(truth: &Sampled, series: &Series, width: usize) -> Option<(Rates, Rates)> {
+    let times = series.times();
+    let span = times.last()?.checked_sub(*times.first()?)?;
+    let median = series.median_interval()?;
+    let longest = span.max(truth.step().saturating_mul(truth.rows().count() as i64));
+    let step = STEP.max(longest / CELLS).max(median / 5);
+    let gap = |median: i64| GAP.0.max(GAP.1 * median);
+    let ours = Rates::of(truth.rows(), step, width, gap(truth.step()));
+    let theirs = Rates::of(series.rows(), step, width, gap(median));
+    // Nothing that turns faster than the vehicle ever does follows it.
+    let theirs = theirs.without_jumps(1.3 * ours.fastest() + 0.5);
+    (!ours.values.is_empty() && !theirs.values.is_empty()).then_some((ours, theirs))
+}
+
+fn of_sums(sums: &Sums, truth: &Rates, estimate: &Rates, free: bool) -> Option<Match> {
+    let step = truth.step;
+    let least = least_cells(truth, estimate);
+    let all: Vec<Option<Alike>> =
+        (0..sums.len()).map(|i| Some(sums.at(i, free)).filter(|at| at.cells >= least)).collect();
+    let tells = |i: usize| all.get(i).copied().flatten().map_or(f64::NEG_INFINITY, |at| at.information());
+    let best = (0..all.len()).filter(|&i| all[i].is_some()).max_by(|&a, &b| tells(a).total_cmp(&tells(b)))?;
+    let here = all[best]?;
+    let is_peak = |i: &usize| tells(*i) > tells(i.wrapping_sub(1)) && tells(*i) >= tells(i + 1);
+    let lobe = lobe(&all, best, &here);
+    let mut rivals: Vec<usize> = (0..all.len())
+        .filter(|i| !lobe.contains(i) && tells(*i) >= RIVAL_INFORMATION * tells(best))
+        .filter(is_peak)
+        .filter(|&i| all[i].is_some_and(|at| at.worse_than(&here) < RIVAL_APART))
+        .collect();
+    rivals.sort_by_key(|&i| i.abs_diff(best));
+    rivals.truncate(RIVALS);
+    let turns = here.squares[0].min(here.squares[1]) > 1e-4;
+    let nats = tells(best) * step as f64 / STEP as f64;
+    let doubt = match () {
+        () if !turns || (lobe.end - lobe.start) as i64 * step > 2_000_000_000 => Some(Doubt::TooEven),
+        () if nats < LEAST_INFORMATION || here.share() < LEAST_SHARE => Some(Doubt::Unlike),
+        () if !rivals.is_empty() => Some(Doubt::Repeats),
+        () => None,
+    };
+    let offset = |i: usize| sums.ahead(i) * step;
+    Some(Match { offset: offset(best), width: step, free, rivals: rivals.into_iter().map(offset).collect(), doubt })
+}
+
+/// Overlaps of fewer cells are not looked at.
+fn least_cells(truth: &Rates, estimate: &Rates) -> f64 {
+    let shorter = truth.values.len().min(estimate.values.len()) as f64;
+    (LEAST_OVERLAP * shorter).max(25.0f64.min(0.8 * shorter))
+}
+
+/// The lags around the best that are no rivals but its own flanks.
+fn lobe(all: &[Option<Alike>], best: usize, here: &Alike) -> Range<usize> {
+    let is_near = |i: usize| all[i].is_some_and(|at| at.worse_than(here) < RIVAL_APART);
+    let mut from = best;
+    while from > 0 && is_near(from - 1) {
+        from -= 1;
+    }
+    let mut to = best + 1;
+    while to < all.len() && is_near(to) {
+        to += 1;
+    }
+    from..to
 }

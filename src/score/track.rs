@@ -1,12 +1,15 @@
 //! Truth as a table of times and attitudes.
 
+use super::series::Series;
 use crate::geometry::{Attitude, exp, log};
 use crate::time::SimTime;
 
 /// Attitudes at increasing times, on the great circle between neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    rows: Vec<(SimTime, Attitude)>,
+    rows: Series,
+    /// Rows further apart than this leave a gap, in which nothing is known, ns.
+    gap: i64,
 }
 
 /// A table that cannot be a truth.
@@ -15,49 +18,73 @@ pub struct Track {
 pub struct TrackError(String);
 
 impl Track {
-    /// Of rows in order of time, of unit length.
+    /// Of rows in order of time; between any two of them the truth is known.
     ///
     /// # Errors
     /// Fewer than two rows, or one that is not after the row before.
-    pub fn new(rows: Vec<(SimTime, Attitude)>) -> Result<Track, TrackError> {
+    pub fn new(rows: impl IntoIterator<Item = (SimTime, Attitude)>) -> Result<Track, TrackError> {
+        let rows = Series::new(rows.into_iter().map(|(t, attitude)| (t.0, attitude)));
         if rows.len() < 2 {
             return Err(TrackError(format!("has {} rows, but a truth needs two or more", rows.len())));
         }
-        match rows.windows(2).position(|pair| pair[1].0 <= pair[0].0) {
-            None => Ok(Track { rows }),
+        let times = rows.times();
+        match times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            None => Ok(Track { rows, gap: i64::MAX }),
             Some(i) => Err(TrackError(format!(
                 "row {} is of {}, which is not after {} of the row before",
                 i + 2,
-                rows[i + 1].0,
-                rows[i].0
+                SimTime(times[i + 1]),
+                SimTime(times[i])
             ))),
         }
     }
 
+    /// The same, recorded: between rows that are further apart than a quarter of a second and than five times their
+    /// median interval nothing is known.
+    pub fn with_gaps(self) -> Track {
+        let gap = self.rows.median_interval().unwrap_or(0).saturating_mul(5).max(250_000_000);
+        Track { gap, ..self }
+    }
+
     /// Its first time.
     pub fn first(&self) -> SimTime {
-        self.rows[0].0
+        SimTime(self.rows.times()[0])
     }
 
     /// Its last.
     pub fn last(&self) -> SimTime {
-        self.rows[self.rows.len() - 1].0
+        SimTime(self.rows.times()[self.rows.len() - 1])
     }
 
-    /// The rows.
-    pub fn rows(&self) -> &[(SimTime, Attitude)] {
-        &self.rows
+    /// How many rows there are.
+    pub fn len(&self) -> usize {
+        self.rows.len()
     }
 
-    /// At any time; before the first row and after the last as there.
-    pub fn at(&self, t: SimTime) -> Attitude {
-        let after = self.rows.partition_point(|(row, _)| *row <= t);
-        let (Some(&(t_0, a)), Some(&(t_1, b))) = (self.rows.get(after.wrapping_sub(1)), self.rows.get(after))
-        else {
-            return if after == 0 { self.rows[0].1 } else { self.rows[self.rows.len() - 1].1 };
-        };
-        let share = (t - t_0).0 as f64 / (t_1 - t_0).0 as f64;
-        Attitude::from_quat(a.q * exp(log(a.q.conjugate() * b.q) * share))
+    /// Whether there is none, which cannot be.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Every `every`-th row.
+    pub fn every(&self, every: usize) -> impl Iterator<Item = (SimTime, Attitude)> + '_ {
+        (0..self.len()).step_by(every.max(1)).map(|i| (SimTime(self.rows.times()[i]), self.rows.attitude(i)))
+    }
+
+    /// At any time; before the first row and after the last as there, in a gap nothing.
+    pub fn at(&self, t: SimTime) -> Option<Attitude> {
+        let times = self.rows.times();
+        let after = times.partition_point(|row| *row <= t.0);
+        if after == 0 || after == times.len() {
+            return Some(self.rows.attitude(after.saturating_sub(1)));
+        }
+        let (t_0, t_1) = (times[after - 1], times[after]);
+        if t_1 - t_0 > self.gap && t.0 > t_0 {
+            return None;
+        }
+        let (a, b) = (self.rows.attitude(after - 1), self.rows.attitude(after));
+        let share = (t.0 - t_0) as f64 / (t_1 - t_0) as f64;
+        Some(Attitude::from_quat(a.q * exp(log(a.q.conjugate() * b.q) * share)))
     }
 }
 
@@ -73,14 +100,25 @@ mod tests {
         let rows = vec![(SimTime(10), at(0.1)), (SimTime(30), Attitude::from_quat(-at(0.5).q))];
         let track = Track::new(rows).unwrap();
         for (t, angle) in [(0, 0.1), (10, 0.1), (15, 0.2), (20, 0.3), (30, 0.5), (99, 0.5)] {
-            assert!(track.at(SimTime(t)).angle_to(at(angle)) < 1e-12, "{t}");
+            assert!(track.at(SimTime(t)).unwrap().angle_to(at(angle)) < 1e-11, "{t}");
         }
         assert_eq!((track.first(), track.last()), (SimTime(10), SimTime(30)));
     }
 
     #[test]
+    fn in_a_gap_of_a_recording_nothing_is_known() {
+        let times = (0..100i64).chain(200..300).map(|k| k * 10_000_000);
+        let track = Track::new(times.map(|t| (SimTime(t), Attitude::IDENTITY))).unwrap();
+        assert!(track.at(SimTime(1_500_000_000)).is_some());
+        let track = track.with_gaps();
+        for (ms, known) in [(990, true), (991, false), (1500, false), (2000, true), (2005, true)] {
+            assert_eq!(track.at(SimTime(ms * 1_000_000)).is_some(), known, "{ms} ms");
+        }
+    }
+
+    #[test]
     fn a_table_out_of_order_is_refused_with_its_row() {
-        let rows = |times: &[i64]| times.iter().map(|&t| (SimTime(t), Attitude::IDENTITY)).collect();
+        let rows = |times: &[i64]| times.iter().map(|&t| (SimTime(t), Attitude::IDENTITY)).collect::<Vec<_>>();
         assert!(Track::new(rows(&[5])).unwrap_err().to_string().contains("two or more"));
         assert!(Track::new(rows(&[5, 6, 6])).unwrap_err().to_string().starts_with("row 3"));
     }

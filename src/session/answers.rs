@@ -119,25 +119,19 @@ impl Heard {
         let Some(said) = self.links.iter().rev().max_by_key(|link| link.len()) else {
             return Judgement::default();
         };
-        let truth = |t: SimTime| self.plan.trajectory.at(t.max(SimTime::ZERO)).attitude;
-        let Judging { align, settle: from } = judging;
-        let options = score::Options { align, from, until: played, ..score::Options::default() };
+        let truth = |t: SimTime| Some(self.plan.trajectory.at(t.max(SimTime::ZERO)).attitude);
+        let Judging { align, settle } = judging;
+        let options = score::Options { align, settle, until: played, ..score::Options::default() };
         // Where nothing moves that tells one clock from the other, an estimate holds when it arrives.
         let arrived =
             || said.iter().map(|it| Timed { stamp: score::Stamp::Arrival, ..*it }).collect::<Vec<_>>();
         let judged = score::judge(&truth, said, &options);
-        let mut figures =
-            judged.or_else(|| score::judge(&truth, &arrived(), &options)).map(|judged| judged.figures);
-        let (late, ahead) = figures.as_ref().map_or((0, None), |figures| {
-            let ns = |value: Option<f64>, unit: f64| value.map(|value| (value * unit) as i64);
-            (ns(figures.delay_ms, 1e6).unwrap_or_default(), ns(figures.clock_offset_s, 1e9))
-        });
-        let held = |it: &Timed| match (it.stamp, ahead) {
-            (score::Stamp::Sample(t), _) => t,
-            (score::Stamp::Own(ns), Some(ahead)) => SimTime(ns - ahead),
-            _ => it.arrival - SimTime(late),
+        let judged = judged.or_else(|_| score::judge(&truth, &arrived(), &options)).ok();
+        let (mut figures, held) = match judged {
+            Some(judged) => (Some(judged.figures), judged.held),
+            None => (None, said.iter().map(|it| it.arrival).collect()),
         };
-        let estimates = said.iter().map(|it| (held(it), it.attitude)).collect();
+        let estimates = held.into_iter().zip(said).map(|(t, it)| (t, it.attitude)).collect();
         if let Some(figures) = &mut figures {
             // What was told in scene time is told in real time, which nobody keeps where nothing is paced.
             figures.delay_ms = match self.speed {

@@ -1,75 +1,114 @@
-//! The comparison as files: errors as a table, attitudes and errors as charts.
+//! The comparison as charts: attitudes and errors over time, in the dataset's axes.
 
 use super::sources::Truth;
-use crate::geometry::Euler;
-use crate::report::ScoreReport;
+use crate::geometry::{Axes, Euler};
 use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
-use crate::report::number;
-use crate::score::Judged;
-use std::fmt::Write;
+use crate::report::{ScoreReport, Scored, number};
+use crate::score::Row;
 
 /// As many points of a line are drawn.
 const POINTS: usize = 4000;
+/// Points further apart than so many of the usual leave a gap, and than this, s.
+const GAP: (f64, f64) = (5.0, 0.25);
 
-/// Every error of every estimate, in the estimates' order.
-pub(super) fn errors_csv(report: &ScoreReport, judged: &[Judged]) -> String {
-    let mut text = String::from("estimate,t_ns,error_deg,inclination_deg,heading_deg\n");
-    for (scored, judged) in report.estimates.iter().zip(judged) {
-        for row in &judged.rows {
-            let [error, inclination, heading] =
-                [row.error.total, row.error.inclination, row.error.heading].map(f64::to_degrees);
-            let _ = writeln!(text, "{},{},{error},{inclination},{heading}", scored.name, row.t.0);
-        }
-    }
-    text
-}
-
-/// One estimate's columns, thinned out for a picture.
-struct Drawn<'a> {
-    name: &'a str,
+/// One estimate, thinned out for a picture.
+pub(super) struct Drawn {
+    name: String,
+    every: u64,
+    seen: u64,
     t: Vec<f64>,
-    /// What is drawn in each panel, deg.
-    columns: Vec<Vec<f64>>,
+    /// Attitudes, in the program's own axes.
+    attitudes: Vec<crate::geometry::Attitude>,
+    /// The whole error, inclination and heading, deg.
+    errors: [Vec<f64>; 3],
 }
 
-fn every(count: usize) -> usize {
-    count.div_ceil(POINTS).max(1)
-}
+impl Drawn {
+    /// Of an estimate of so many rows.
+    pub fn new(name: &str, rows: u64) -> Drawn {
+        let every = rows.div_ceil(POINTS as u64).max(1);
+        Drawn { name: name.into(), every, seen: 0, t: Vec::new(), attitudes: Vec::new(), errors: Default::default() }
+    }
 
-fn drawn<'a>(
-    report: &'a ScoreReport,
-    judged: &[Judged],
-    of: impl Fn(&crate::score::Row) -> Vec<f64>,
-) -> Vec<Drawn<'a>> {
-    let one = |(scored, judged): (&'a crate::report::Scored, &Judged)| {
-        let rows = || judged.rows.iter().step_by(every(judged.rows.len()));
-        let values: Vec<Vec<f64>> = rows().map(&of).collect();
-        let width = values.first().map_or(0, Vec::len);
-        Drawn {
-            name: &scored.name,
-            t: rows().map(|row| row.t.seconds()).collect(),
-            columns: (0..width).map(|i| values.iter().map(|row| row[i].to_degrees()).collect()).collect(),
+    /// Takes the next row in.
+    pub fn add(&mut self, row: &Row) {
+        let is_drawn = self.seen.is_multiple_of(self.every);
+        self.seen += 1;
+        if !is_drawn {
+            return;
         }
-    };
-    report.estimates.iter().zip(judged).map(one).collect()
+        self.t.push(row.t.seconds());
+        self.attitudes.push(row.attitude);
+        let errors = [row.error.total, row.error.inclination, row.error.heading];
+        self.errors.iter_mut().zip(errors).for_each(|(column, error)| column.push(error.to_degrees()));
+    }
+
+    /// Roll, pitch and yaw, deg.
+    fn angles(&self, axes: Axes) -> [Vec<f64>; 3] {
+        angles(self.attitudes.iter().copied(), axes)
+    }
 }
 
-fn angles(euler: Euler) -> Vec<f64> {
-    vec![euler.roll, euler.pitch, euler.yaw]
+fn angles(attitudes: impl Iterator<Item = crate::geometry::Attitude> + Clone, axes: Axes) -> [Vec<f64>; 3] {
+    let all = attitudes.map(|attitude| Euler::from_quat(axes.attitude_out(attitude)));
+    let of = |angle: fn(Euler) -> f64| all.clone().map(|euler| angle(euler).to_degrees()).collect();
+    [of(|euler| euler.roll), of(|euler| euler.pitch), of(|euler| euler.yaw)]
+}
+
+/// A line's points with a break wherever rows are missing.
+fn with_gaps(t: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_unstable_by(f64::total_cmp);
+    let longest = steps.get(steps.len() / 2).map_or(f64::INFINITY, |usual| GAP.1.max(GAP.0 * usual));
+    let mut points = (Vec::with_capacity(t.len()), Vec::with_capacity(t.len()));
+    for (i, (&t_i, &y_i)) in t.iter().zip(y).enumerate() {
+        if i > 0 && t_i - t[i - 1] > longest {
+            points.0.push(t_i);
+            points.1.push(f64::NAN);
+        }
+        points.0.push(t_i);
+        points.1.push(y_i);
+    }
+    points
+}
+
+/// A panel's lines in the order in which they are drawn: what moves most from point to point lies behind.
+struct Lines(Vec<(String, Vec<f64>, Vec<f64>)>);
+
+impl Lines {
+    fn of<'a>(drawn: impl Iterator<Item = (&'a str, &'a [f64], &'a [f64])>) -> Lines {
+        let mut lines: Vec<_> = drawn
+            .map(|(name, t, y)| {
+                let restless: f64 = y.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+                let (t, y) = with_gaps(t, y);
+                (restless, (name.to_string(), t, y))
+            })
+            .collect();
+        lines.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Lines(lines.into_iter().map(|(_, line)| line).collect())
+    }
+
+    fn lines(&self) -> Vec<Line<'_>> {
+        self.0.iter().map(|(name, x, y)| Line { name, x, y, kind: LineKind::Value }).collect()
+    }
 }
 
 /// Roll, pitch and yaw over time, with the truth.
-pub(super) fn attitude(report: &ScoreReport, judged: &[Judged], truth: &Truth) -> String {
-    let drawn = drawn(report, judged, |row| angles(Euler::from_quat(row.attitude.q)));
-    let rows = truth.track.rows();
-    let thin = || rows.iter().step_by(every(rows.len()));
-    let t: Vec<f64> = thin().map(|(t, _)| t.seconds()).collect();
-    let angles: Vec<_> = thin().map(|(_, attitude)| angles(Euler::from_quat(attitude.q))).collect();
-    let columns: Vec<Vec<f64>> =
-        (0..3).map(|i| angles.iter().map(|row| row[i].to_degrees()).collect()).collect();
+pub(super) fn attitude(report: &ScoreReport, drawn: &[Drawn], truth: &Truth) -> String {
+    let axes = truth.axes;
+    let rows = || truth.track.every(truth.track.len().div_ceil(POINTS));
+    let t: Vec<f64> = rows().map(|(t, _)| t.seconds()).collect();
+    let attitudes: Vec<_> = rows().map(|(_, attitude)| attitude).collect();
+    let true_angles = angles(attitudes.iter().copied(), axes).map(|y| with_gaps(&t, &y));
+    let all: Vec<[Vec<f64>; 3]> = drawn.iter().map(|drawn| drawn.angles(axes)).collect();
+    let of = |i: usize| {
+        let each = drawn.iter().zip(&all);
+        Lines::of(each.map(|(drawn, angles)| (drawn.name.as_str(), &drawn.t[..], &angles[i][..])))
+    };
+    let lines = [0, 1, 2].map(of);
     let panel = |(i, name): (usize, &str)| {
-        let mut lines = lines(&drawn, i);
-        lines.push(Line { name: "truth", x: &t, y: &columns[i], kind: LineKind::Truth });
+        let mut lines = lines[i].lines();
+        lines.push(Line { name: "truth", x: &true_angles[i].0, y: &true_angles[i].1, kind: LineKind::Truth });
         Panel {
             title: name.to_string(),
             y_label: format!("{} (deg)", name.to_lowercase()),
@@ -79,20 +118,31 @@ pub(super) fn attitude(report: &ScoreReport, judged: &[Judged], truth: &Truth) -
         }
     };
     panels(&Panels {
-        title: "Estimated attitude and truth".into(),
+        title: format!("Estimated attitude and truth, {}", named(axes)),
         subtitle: subtitle(report),
         x_label: "time (s)".into(),
         panels: ["Roll", "Pitch", "Yaw"].into_iter().enumerate().map(panel).collect(),
     })
 }
 
+/// Axes as a title says them.
+fn named(axes: Axes) -> &'static str {
+    match axes {
+        Axes::NedFrd => "North-East-Down and Forward-Right-Down",
+        Axes::EnuFlu => "East-North-Up and Forward-Left-Up",
+    }
+}
+
 /// Errors over time.
-pub(super) fn error(report: &ScoreReport, judged: &[Judged]) -> String {
-    let drawn = drawn(report, judged, |row| vec![row.error.total, row.error.inclination, row.error.heading]);
+pub(super) fn error(report: &ScoreReport, drawn: &[Drawn]) -> String {
+    let of = |i: usize| {
+        Lines::of(drawn.iter().map(|drawn| (drawn.name.as_str(), &drawn.t[..], &drawn.errors[i][..])))
+    };
+    let lines = [0, 1, 2].map(of);
     let panel = |(i, name): (usize, &str)| Panel {
         title: name.to_string(),
         y_label: "error (deg)".into(),
-        lines: lines(&drawn, i),
+        lines: lines[i].lines(),
         ..Panel::default()
     };
     let titles =
@@ -105,17 +155,11 @@ pub(super) fn error(report: &ScoreReport, judged: &[Judged]) -> String {
     })
 }
 
-fn lines<'a>(drawn: &'a [Drawn<'_>], i: usize) -> Vec<Line<'a>> {
-    let line = |drawn: &'a Drawn<'_>| {
-        Some(Line { name: drawn.name, x: &drawn.t, y: drawn.columns.get(i)?, kind: LineKind::Value })
-    };
-    drawn.iter().filter_map(line).collect()
-}
-
 /// Who is how good.
 fn subtitle(report: &ScoreReport) -> String {
-    let one = |scored: &crate::report::Scored| {
-        format!("{} {} deg RMS", scored.name, number(scored.figures.rms_deg))
+    let one = |scored: &Scored| match &scored.figures {
+        Some(figures) => format!("{} {} deg RMS", scored.name, number(figures.errors.rms_deg)),
+        None => format!("{} not known", scored.name),
     };
     let each: Vec<_> = report.estimates.iter().map(one).collect();
     format!("{}: {}", report.truth, each.join(", "))

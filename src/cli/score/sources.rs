@@ -1,11 +1,11 @@
 //! Where truth and estimates come from: folders, files, filters.
 
-use super::{Refusal, Source};
+use super::{Estimates, Refusal, Source, hints};
 use crate::dataset::read::{self as stored, readings};
 use crate::filters::{self, FILTERS, Readings, SIX};
 use crate::geometry::Axes;
 use crate::scene::{Plan, nearest};
-use crate::score::{self, Recorded, Stamp, Timed, Track};
+use crate::score::{self, Clock, Recorded, Series, Track};
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use std::path::{Path, PathBuf};
@@ -14,6 +14,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct Truth {
     pub track: Track,
     pub axes: Axes,
+    /// For how long before it the vehicle was held still, where a run's report says so.
+    pub rest: SimTime,
     /// The dataset's folder, where it is one.
     folder: Option<PathBuf>,
 }
@@ -32,7 +34,18 @@ pub(super) fn truth(path: &Path, axes: Option<Axes>) -> Result<Truth, Refusal> {
         (estimates.iter().map(|estimate| (estimate.arrival, estimate.attitude)).collect(), axes)
     };
     let track = Track::new(rows).map_err(|why| Refusal(format!("{}: {why}", path.display())))?;
-    Ok(Truth { track, axes, folder: path.is_dir().then(|| path.to_path_buf()) })
+    let track = if is_dataset { track } else { track.with_gaps() };
+    let folder = path.is_dir().then(|| path.to_path_buf());
+    let rest = folder.as_deref().and_then(rest).unwrap_or(SimTime::ZERO);
+    Ok(Truth { track, axes, rest, folder })
+}
+
+/// For how long a run held the vehicle still before the scene.
+fn rest(folder: &Path) -> Option<SimTime> {
+    let report = std::fs::read(folder.join("report.json")).ok()?;
+    let report: serde_json::Value = serde_json::from_slice(&report).ok()?;
+    let seconds = report.get("rest_s")?.as_f64().filter(|rest| (0.0..1e6).contains(rest))?;
+    Some(SimTime((seconds * 1e9) as i64))
 }
 
 /// Reads the files and runs the filters; every one that cannot be is told.
@@ -76,7 +89,41 @@ fn file(truth: &Truth, name: &str, axes: Option<Axes>) -> Result<Source, Refusal
     let recorded = score::read(&path, axes.unwrap_or(truth.axes))?;
     // A dot would end the name in a limit's field.
     let stem = path.file_stem().map_or(name.into(), |stem| stem.to_string_lossy().replace('.', "-"));
-    Ok(Source { name: stem, source: name.to_string(), recorded })
+    let of = |attitudes: &[crate::geometry::Attitude]| {
+        Series::new(recorded.estimates.iter().zip(attitudes).map(|(it, attitude)| (it.arrival.0, *attitude)))
+    };
+    let series = Series::new(recorded.estimates.iter().map(|it| (it.arrival.0, it.attitude)));
+    let others = recorded.others.iter().map(|(name, attitudes)| (*name, of(attitudes))).collect();
+    let (axes, remarks) = (recorded.axes, recorded.remarks.clone());
+    // An estimate in the dataset's own folder is the dataset's.
+    let is_ours = truth.folder.as_deref().is_some_and(|folder| is_within(&path, folder));
+    let clock = if is_ours { Clock::Truth } else { Clock::Auto };
+    let recorded = Estimates { series, others, axes, remarks };
+    Ok(Source { name: stem, source: name.to_string(), clock, recorded, hints: truth.known(false) })
+}
+
+/// Whether a file is the estimate that a dataset's manifest lists.
+fn is_within(path: &Path, folder: &Path) -> bool {
+    let same = |a: &Path, b: &Path| a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
+    path.file_stem().is_some_and(|stem| stem == "estimate")
+        && path.parent().is_some_and(|parent| same(parent, folder))
+        && folder.join("manifest.json").exists()
+}
+
+impl Truth {
+    /// What is known of an estimate that was made with it.
+    fn known(&self, without_mag: bool) -> hints::Known {
+        let folder = self.folder.as_deref();
+        hints::Known {
+            declination_deg: folder.and_then(|folder| declination(folder).ok()).map(f64::to_degrees),
+            without_mag: without_mag || folder.is_some_and(|folder| !has(folder, SensorKind::Mag)),
+        }
+    }
+}
+
+/// Whether a dataset has readings of a sensor.
+fn has(folder: &Path, kind: SensorKind) -> bool {
+    folder.join(format!("{kind}.csv")).exists()
 }
 
 /// What filters run on: the dataset's readings and its declination.
@@ -101,18 +148,21 @@ fn run(truth: &Truth, name: &str, data: &mut Option<Data>) -> Result<Source, Ref
             )));
         }
     }
-    let timed = |(t, attitude): (SimTime, _)| Timed { arrival: t, stamp: Stamp::Sample(t), attitude };
-    let estimates = filters::run(kind, readings, with_mag, *declination).into_iter().map(timed).collect();
-    let remarks = match with_mag && readings.mag.is_empty() {
-        true => vec!["the dataset has no magnetometer: heading is from where it starts".to_string()],
-        false => Vec::new(),
+    let estimates = filters::run(kind, readings, with_mag, *declination);
+    let series = Series::new(estimates.into_iter().map(|(t, attitude)| (t.0, attitude)));
+    let lacks = with_mag && readings.mag.is_empty();
+    let remarks = if lacks {
+        vec!["the dataset has no magnetometer: heading is from where it starts".to_string()]
+    } else {
+        Vec::new()
     };
-    let recorded = Recorded { estimates, axes: Axes::NedFrd, others: Vec::new(), remarks };
-    Ok(Source { name: name.to_string(), source: name.to_string(), recorded })
+    let recorded = Estimates { series, others: Vec::new(), axes: Axes::NedFrd, remarks };
+    let hints = truth.known(!with_mag || lacks);
+    Ok(Source { name: name.to_string(), source: name.to_string(), clock: Clock::Sample, recorded, hints })
 }
 
 fn of_dataset(folder: &Path) -> Result<Readings, Refusal> {
-    let of = |kind: SensorKind| match folder.join(format!("{kind}.csv")).exists() {
+    let of = |kind: SensorKind| match has(folder, kind) {
         true => readings(folder, kind),
         false => Ok(Vec::new()),
     };

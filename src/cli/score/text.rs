@@ -1,27 +1,17 @@
 //! The comparison as a person reads it.
 
 use crate::report::{ScoreReport, Scored, number, table};
-use crate::score::DelayKnown;
+use crate::score::{DelayKnown, Errors, Figures};
 
 pub(super) fn report(report: &ScoreReport) -> String {
-    let heading =
-        ["estimate", "samples", "RMS deg", "max", "inclination RMS", "max", "heading RMS", "max", "delay ms"];
-    let row = |scored: &Scored| {
-        let f = &scored.figures;
-        let errors = [
-            f.rms_deg,
-            f.max_deg,
-            f.inclination_rms_deg,
-            f.inclination_max_deg,
-            f.heading_rms_deg,
-            f.heading_max_deg,
-        ];
-        let mut row = vec![scored.name.clone(), f.samples.to_string()];
-        row.extend(errors.map(number));
-        row.push(f.delay_ms.map_or("-".into(), number));
-        row
-    };
-    let mut text = table(&heading, &report.estimates.iter().map(row).collect::<Vec<_>>());
+    let judged = || report.estimates.iter().filter_map(|scored| Some((scored, scored.figures.as_ref()?)));
+    let mut text = String::new();
+    if judged().next().is_some() {
+        text += &table(&HEADING, &judged().flat_map(|(scored, figures)| rows(scored, figures)).collect::<Vec<_>>());
+        let angles = ["estimate", "roll RMS deg", "max", "pitch RMS deg", "max", "yaw RMS deg", "max"];
+        text += "\n";
+        text += &table(&angles, &judged().map(|(scored, figures)| angles_of(scored, figures)).collect::<Vec<_>>());
+    }
     for scored in &report.estimates {
         for note in notes(scored) {
             text += &format!("{}: {note}\n", scored.name);
@@ -33,24 +23,88 @@ pub(super) fn report(report: &ScoreReport) -> String {
     text
 }
 
+const HEADING: [&str; 10] = [
+    "estimate",
+    "samples",
+    "covers",
+    "RMS deg",
+    "max",
+    "inclination RMS",
+    "max",
+    "heading RMS",
+    "max",
+    "delay ms",
+];
+
+/// As given, and with the delay taken out.
+fn rows(scored: &Scored, figures: &Figures) -> Vec<Vec<String>> {
+    let row = |name: String, counts: [String; 2], errors: &Errors, delay: String| {
+        let errors = [
+            errors.rms_deg,
+            errors.max_deg,
+            errors.inclination_rms_deg,
+            errors.inclination_max_deg,
+            errors.heading_rms_deg,
+            errors.heading_max_deg,
+        ];
+        let mut row = vec![name];
+        row.extend(counts);
+        row.extend(errors.map(number));
+        row.push(delay);
+        row
+    };
+    let counts = [figures.samples.to_string(), format!("{} %", number(100.0 * figures.coverage))];
+    let delay = match (figures.clock_offset_s, figures.delay_known, figures.delay_ms) {
+        (Some(_), ..) => "in its clock".to_string(),
+        (None, DelayKnown::Echoed, Some(ms)) => number(ms),
+        (None, DelayKnown::Unknown, _) => "not known".to_string(),
+        _ => "left in".to_string(),
+    };
+    let mut rows = vec![row(scored.name.clone(), counts, &figures.errors, delay)];
+    if let Some(fitted) = &figures.fitted {
+        let taken = format!("{} out", number(fitted.delay_ms));
+        rows.push(row(format!("{} less delay", scored.name), Default::default(), &fitted.errors, taken));
+    }
+    rows
+}
+
+fn angles_of(scored: &Scored, figures: &Figures) -> Vec<String> {
+    let e = &figures.errors;
+    let angles = [e.roll_rms_deg, e.roll_max_deg, e.pitch_rms_deg, e.pitch_max_deg, e.yaw_rms_deg, e.yaw_max_deg];
+    std::iter::once(scored.name.clone()).chain(angles.map(number)).collect()
+}
+
 /// What stands below the table.
 fn notes(scored: &Scored) -> Vec<String> {
-    let f = &scored.figures;
     let mut notes = scored.remarks.clone();
+    notes.extend(scored.unknown.clone());
+    let Some(f) = &scored.figures else { return notes };
     if let Some(looks) = &f.looks {
         let without =
             f.looks_rms_deg.map_or(String::new(), |rms| format!(" ({} deg RMS without that)", number(rms)));
         notes.push(format!("estimate looks {looks}{without}"));
     }
-    if let Some(heading) = f.heading_offset_deg {
-        notes.push(format!("a heading of {} deg is taken out", number(heading)));
+    if let Some(aligned) = f.aligned {
+        let body = if aligned.body_deg > 0.0 { format!(" and one of the body of {} deg", number(aligned.body_deg)) } else { String::new() };
+        notes.push(match f.heading_offset_deg {
+            Some(heading) => format!("a heading of {} deg is taken out", number(heading)),
+            None => format!(
+                "a rotation of the world of {} deg ({} deg of it heading){body} is taken out",
+                number(aligned.world_deg),
+                number(aligned.heading_deg)
+            ),
+        });
     }
     if let Some(offset) = f.clock_offset_s {
-        notes.push(format!("its clock is {offset:.6} s ahead of the truth's, its delay included"));
+        let std = f.clock_std_ms.map_or(String::new(), |ms| format!(" (standard error {} ms)", number(ms)));
+        notes.push(format!(
+            "its clock is {offset:.6} s ahead of the truth's{std}, by the motion; its delay is part of that"
+        ));
     }
     // Of an estimate that is mistaken the motion says nothing of time.
     if let (DelayKnown::Unknown, Some(doubt), None) = (f.delay_known, f.delay_doubt, &f.looks) {
         notes.push(format!("its delay is not known: {doubt}"));
     }
+    notes.extend(scored.hints.clone());
     notes
 }

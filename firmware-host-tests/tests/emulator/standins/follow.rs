@@ -22,19 +22,19 @@ fn every_stand_in_follows_the_truth_and_its_answers_are_read_right() {
         eprintln!(
             "{what}: own {:.4} deg RMS, {:.3} at most (inclination {:.4}, heading {:.4}), delay {:?} ms; {rms:.4} and \
              {max:.3} at exact times",
-            figures.rms_deg,
-            figures.max_deg,
-            figures.inclination_rms_deg,
-            figures.heading_rms_deg,
+            figures.errors.rms_deg,
+            figures.errors.max_deg,
+            figures.errors.inclination_rms_deg,
+            figures.errors.heading_rms_deg,
             figures.delay_ms
         );
-        assert!(figures.rms_deg < BOUND_DEG, "{what}: {figures:?}");
+        assert!(figures.errors.rms_deg < BOUND_DEG, "{what}: {figures:?}");
         // INAV's estimate is of the sample before, and later by up to its task's period.
         assert!(rms < BOUND_DEG || case.make == Make::Inav, "{what}: {rms}");
         if matches!(case.make, Make::Px4 | Make::Inav) {
             let answers = judge(&plan, &told.answers);
-            eprintln!("{what}: as told {:.4} deg RMS, {} answers", answers.rms_deg, answers.samples);
-            assert!(answers.rms_deg < BOUND_DEG && answers.looks.is_none(), "{what}: {answers:?}");
+            eprintln!("{what}: as told {:.4} deg RMS, {} answers", answers.errors.rms_deg, answers.samples);
+            assert!(answers.errors.rms_deg < BOUND_DEG && answers.looks.is_none(), "{what}: {answers:?}");
             let least = if case.make == Make::Px4 { 45 } else { 95 } * plan.duration.0 as u64 / 1_000_000_000;
             assert!(answers.samples >= least, "{what}: {} answers", answers.samples);
         }

@@ -74,9 +74,9 @@ fn follows(make: Make) {
     eprintln!(
         "{make} on a link after {} s at rest: own {:.4} deg RMS, {rms:.4} and {max:.3} at exact times; told: {:?}; \
          notices: {notices:?}",
-        outcome.rest_s, figures.rms_deg, outcome.attitude
+        outcome.rest_s, figures.errors.rms_deg, outcome.attitude
     );
-    assert!(figures.rms_deg < BOUND_DEG, "{make}: {figures:?}");
+    assert!(figures.errors.rms_deg < BOUND_DEG, "{make}: {figures:?}");
     assert!(rms < BOUND_DEG || make == Make::Inav, "{make}: {rms}");
     let target = case.to.parse::<Destination>().expect("a destination").target;
     assert!(target.is_none_or(|target| outcome.rest_s >= target.rest.0 as f64 * 1e-9), "{make}");

@@ -212,7 +212,7 @@ pub fn converse_well(case: &Case) -> (Arc<Plan>, Told) {
 
 /// The emulator's judgement of a series of estimates.
 pub fn judge(plan: &Plan, said: &[Timed]) -> Figures {
-    let truth = |t: SimTime| plan.trajectory.at(t.max(SimTime::ZERO)).attitude;
+    let truth = |t: SimTime| Some(plan.trajectory.at(t.max(SimTime::ZERO)).attitude);
     let options = score::Options { until: plan.duration, ..score::Options::default() };
     score::judge(&truth, said, &options).expect("estimates").figures
 }

@@ -1,0 +1,286 @@
+//! Clocks, delays and what may stand in their way: an offset is right within 5 ms or declared unknown, and no figure is
+//! ever wrong without a word.
+
+use super::*;
+use crate::geometry::{Attitude, Euler, exp};
+use crate::random;
+use crate::time::SimTime;
+use glam::DVec3;
+use rand::{Rng, RngExt};
+use std::f64::consts::TAU;
+
+/// How long each motion lasts, s.
+const LASTS: f64 = 40.0;
+
+/// Attitudes as functions of time, s.
+type Motion = fn(f64) -> Attitude;
+
+fn euler(roll: f64, pitch: f64, yaw: f64) -> Attitude {
+    Attitude::from_quat(Euler { roll, pitch, yaw }.to_quat())
+}
+
+/// From 0 to 1 around `at`, within `over` seconds, smoothly.
+fn step(t: f64, at: f64, over: f64) -> f64 {
+    let u = ((t - at) / over).clamp(0.0, 1.0);
+    u * u * u * (10.0 - u * (15.0 - 6.0 * u))
+}
+
+/// Turns about every axis that never repeat.
+fn flight(t: f64) -> Attitude {
+    euler(0.45 * libm::sin(0.7 * t), 0.25 * libm::sin(1.1 * t + 0.5), 0.1 * t + 0.5 * libm::sin(0.3 * t))
+}
+
+/// Rest, then one turn after the other.
+fn turns(t: f64) -> Attitude {
+    let roll = 0.5 * (step(t, 8.0, 2.0) - step(t, 12.0, 2.0));
+    let pitch = 0.4 * (step(t, 16.0, 1.5) - step(t, 19.0, 3.0));
+    euler(roll, pitch, 1.5 * step(t, 24.0, 4.0) - 0.8 * step(t, 33.0, 2.0))
+}
+
+/// Ten fast turns that end where they began.
+fn pirouette(t: f64) -> Attitude {
+    euler(0.1 * step(t, 3.0, 1.0), 0.0, 10.0 * TAU * step(t, 12.0, 5.0) - TAU * step(t, 25.0, 4.0))
+}
+
+/// A cone at 2 Hz that opens and closes.
+fn cone(t: f64) -> Attitude {
+    let size = 0.087 * (step(t, 5.0, 2.0) - step(t, 30.0, 6.0));
+    let turn = TAU * 2.0 * t;
+    Attitude::from_quat(exp(DVec3::new(libm::cos(turn), libm::sin(turn), 0.0) * size) * exp(DVec3::Z * 0.4 * step(t, 15.0, 8.0)))
+}
+
+/// Vibration at 37 Hz under slow tilts.
+fn vibration(t: f64) -> Attitude {
+    let shake = 0.002 * libm::sin(TAU * 37.0 * t) * step(t, 2.0, 1.0);
+    euler(0.3 * (step(t, 10.0, 6.0) - step(t, 26.0, 8.0)) + shake, 0.2 * step(t, 18.0, 5.0) - shake, 0.0)
+}
+
+/// A rocking that repeats for ever.
+fn rocking(t: f64) -> Attitude {
+    euler(0.35 * libm::sin(TAU * 0.25 * t), 0.0, 0.0)
+}
+
+const MOTIONS: [(&str, Motion); 6] = [
+    ("flight", flight),
+    ("turns", turns),
+    ("pirouette", pirouette),
+    ("cone", cone),
+    ("vibration", vibration),
+    ("rocking", rocking),
+];
+
+/// What was done to an estimate.
+#[derive(Debug)]
+struct Made {
+    /// Its clock ahead of the truth's, delay included, s.
+    ahead: f64,
+    series: Series,
+    /// The root mean square error at the times at which the estimates held, deg.
+    rms_deg: f64,
+}
+
+fn normal(random: &mut impl Rng) -> f64 {
+    (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0
+}
+
+/// An estimate of a motion: the clock `offset` s ahead, late by a delay, its heading off by 0 to 180 degrees, wandering
+/// by up to 5 degrees, with noise and stretches lost, begun before or after the scene.
+fn make(motion: Motion, seed: u64, offset: Option<f64>) -> Made {
+    let mut random = random::stream(seed, "clocks");
+    let rate = [20.0, 50.0, 100.0, 200.0][random.random_range(0..4)];
+    let before = [0.0, 0.0, 5.0, 20.0][random.random_range(0..4)];
+    let cut = [0.0, 0.0, 0.3][random.random_range(0..3)] * LASTS;
+    let heading = random.random_range(0.0..180f64).to_radians();
+    let wander = random.random_range(0.0..5f64).to_radians();
+    let delay = if random.random() { random.random_range(0.0..0.2) } else { 0.0 };
+    let noise = [0.0, 0.02f64, 0.2][random.random_range(0..3)].to_radians();
+    let offset = offset.unwrap_or_else(|| random.random_range(-100.0..100.0));
+    let waves: Vec<[f64; 5]> = (0..4)
+        .map(|_| {
+            let period = random.random_range(5.0..30.0);
+            [period, random.random_range(0.0..TAU), normal(&mut random), normal(&mut random), normal(&mut random)]
+        })
+        .collect();
+    // Four waves of so many normal numbers have this root mean square.
+    let size = wander / libm::sqrt(waves.iter().map(|w| (w[2] * w[2] + w[3] * w[3] + w[4] * w[4]) / 2.0).sum::<f64>());
+    let drift = |t: f64| -> DVec3 {
+        waves.iter().map(|w| DVec3::new(w[2], w[3], w[4]) * libm::sin(TAU * t / w[0] + w[1])).sum::<DVec3>() * size
+    };
+    let lost: Vec<(f64, f64)> = (0..random.random_range(0..4))
+        .map(|_| {
+            let from = random.random_range(0.0..LASTS);
+            (from, from + random.random_range(0.0..3.0))
+        })
+        .collect();
+    let (mut rows, mut square, mut count) = (Vec::new(), 0.0, 0.0);
+    for k in 0..((LASTS + before - cut) * rate) as i64 {
+        let held = k as f64 / rate - before + random.random_range(-0.2..0.2) / rate;
+        if lost.iter().any(|(from, to)| (*from..*to).contains(&held)) {
+            continue;
+        }
+        let shake = DVec3::new(normal(&mut random), normal(&mut random), normal(&mut random)) * noise;
+        let truth = motion(held.clamp(0.0, LASTS));
+        let q = exp(DVec3::Z * heading) * exp(drift(held)) * truth.q * exp(shake);
+        if (0.0..=LASTS).contains(&held) {
+            square += truth.angle_to(Attitude::from_quat(q)).to_degrees().powi(2);
+            count += 1.0;
+        }
+        rows.push((((held + offset + delay) * 1e9) as i64, Attitude::from_quat(q)));
+    }
+    Made { ahead: offset + delay, series: Series::new(rows), rms_deg: libm::sqrt(square / count) }
+}
+
+/// On the clock that leaves no doubt.
+fn options() -> Options {
+    let until = SimTime((LASTS * 1e9) as i64);
+    Options { clock: Clock::Auto, delay: Delay::Keep, until, ..Options::default() }
+}
+
+fn judged(motion: Motion, series: &Series, options: &Options) -> Result<Judged, Unjudged> {
+    judge_series(&|t: SimTime| Some(motion(t.seconds())), series.clone(), &[], options)
+}
+
+/// How an estimate came out: the clock found and its error in s, or that it is not known.
+fn outcome(name: &str, motion: Motion, seed: u64) -> Option<f64> {
+    let made = make(motion, seed, None);
+    let figures = match judged(motion, &made.series, &options()) {
+        Ok(judged) => judged.figures,
+        Err(Unjudged::When(why)) => {
+            assert!(why.len() > 20, "{name} {seed}: {why}");
+            return None;
+        }
+        Err(other) => panic!("{name} {seed}: {other}"),
+    };
+    let off = match (figures.clock_offset_s, figures.fitted) {
+        (Some(ahead), _) => ahead - made.ahead,
+        (None, Some(fitted)) => fitted.delay_ms * 1e-3 - made.ahead,
+        (None, None) => panic!("{name} {seed}: on the truth's clock, {figures:?}"),
+    };
+    // Right to 5 ms if it is said to be certain; whatever is said, the figure is right.
+    assert!(!figures.clock_certain || off.abs() < 0.005, "{name} {seed}: {off} s off, {figures:?}");
+    let rms = figures.fitted.map_or(figures.errors.rms_deg, |fitted| fitted.errors.rms_deg);
+    let bound = (0.05 * made.rms_deg).max(0.03);
+    assert!((rms - made.rms_deg).abs() < bound, "{name} {seed}: {rms} for {}, {figures:?}", made.rms_deg);
+    figures.clock_certain.then_some(off)
+}
+
+/// The seeds of each motion.
+const SEEDS: u64 = 200;
+
+#[test]
+fn an_offset_is_right_within_5_ms_or_declared_unknown() {
+    let cases: Vec<(usize, u64)> = (0..MOTIONS.len()).flat_map(|m| (0..SEEDS).map(move |seed| (m, seed))).collect();
+    let half = cases.len() / 2;
+    let run = |cases: &[(usize, u64)]| -> Vec<(usize, Option<f64>)> {
+        cases.iter().map(|&(m, seed)| (m, outcome(MOTIONS[m].0, MOTIONS[m].1, seed))).collect()
+    };
+    let found = std::thread::scope(|scope| {
+        let other = scope.spawn(|| run(&cases[half..]));
+        let mut found = run(&cases[..half]);
+        found.extend(other.join().unwrap());
+        found
+    });
+    for (m, (name, _)) in MOTIONS.iter().enumerate() {
+        let of = || found.iter().filter(|(of, _)| *of == m);
+        let known: Vec<f64> = of().filter_map(|(_, off)| *off).collect();
+        let worst = known.iter().fold(0.0f64, |worst, off| worst.max(off.abs()));
+        eprintln!("{name}: {} of {SEEDS} known, {:.2} ms off at most", known.len(), worst * 1e3);
+        // A motion that does not repeat tells nearly always; one that does, only with a rest beside it.
+        let least = if *name == "rocking" { 0 } else { SEEDS as usize * 9 / 10 };
+        assert!(known.len() >= least, "{name}: only {} known", known.len());
+        assert!(*name != "rocking" || known.len() < SEEDS as usize / 2, "{name}: {} known", known.len());
+    }
+}
+
+#[test]
+fn a_rest_that_is_known_tells_where_a_motion_that_repeats_begins() {
+    for seed in 0..40 {
+        let made = make(rocking, seed, Some(17.0));
+        let alone = judged(rocking, &made.series, &options());
+        let rest = Options { rest: SimTime(25_000_000_000), ..options() };
+        if let Ok(judged) = judged(rocking, &made.series, &rest)
+            && judged.figures.clock_certain
+        {
+            let off = judged.figures.clock_offset_s.unwrap() - made.ahead;
+            assert!(off.abs() < 0.005, "{seed}: {off}");
+        }
+        if let Err(Unjudged::When(why)) = alone {
+            assert!(why.contains("the motion repeats"), "{seed}: {why}");
+        }
+    }
+    // Begun long before, it rests where the truth does, and there is no doubt.
+    let made = (0..200).map(|seed| make(rocking, seed, Some(17.0))).find(|made| {
+        made.series.times()[0] < 0 && made.rms_deg < 60.0
+    });
+    let made = made.unwrap();
+    let rest = Options { rest: SimTime(25_000_000_000), ..options() };
+    let judged = judged(rocking, &made.series, &rest).unwrap();
+    assert!(judged.figures.clock_certain && (judged.figures.clock_offset_s.unwrap() - made.ahead).abs() < 0.005);
+}
+
+/// Negative controls.
+#[test]
+fn of_another_flight_no_clock_is_told() {
+    for (m, (name, motion)) in MOTIONS.iter().enumerate() {
+        for (n, (other, _)) in MOTIONS.iter().enumerate().filter(|(n, _)| *n != m) {
+            for seed in 0..6 {
+                let made = make(MOTIONS[n].1, seed, Some(31.0));
+                let found = judged(*motion, &made.series, &options());
+                assert!(matches!(found, Err(Unjudged::When(_))), "{other} as {name}, {seed}: {:?}", found.unwrap().figures);
+            }
+        }
+    }
+}
+
+#[test]
+fn on_the_truths_own_clock_nothing_is_taken_out_and_both_figures_are_told() {
+    for (name, motion) in MOTIONS.iter().filter(|(name, _)| *name != "vibration") {
+        // Exact but late by 120 ms, with the truth's own beginning and end.
+        let rows = (0..=4000).map(|k| k as f64 * 0.01).map(|t| ((t * 1e9) as i64, motion((t - 0.12).max(0.0))));
+        let series = Series::new(rows);
+        let figures = judged(*motion, &series, &options()).unwrap().figures;
+        let given = judged(*motion, &series, &Options { clock: Clock::Truth, ..options() }).unwrap().figures;
+        assert_eq!(figures.errors, given.errors, "{name}");
+        assert!(figures.clock_offset_s.is_none() && figures.errors.rms_deg > 0.1, "{name}: {figures:?}");
+        let fitted = figures.fitted.unwrap_or_else(|| panic!("{name}: {figures:?}"));
+        assert!((fitted.delay_ms - 120.0).abs() < 1.0 && fitted.errors.rms_deg < 0.05, "{name}: {fitted:?}");
+        let given = Options { delay: Delay::Given(120_000_000), ..options() };
+        let figures = judged(*motion, &series, &Options { clock: Clock::Truth, ..given }).unwrap().figures;
+        assert!((figures.fitted.unwrap().errors.rms_deg) < 0.05 && figures.errors.rms_deg > 0.1, "{name}");
+    }
+}
+
+#[test]
+fn what_an_estimate_covers_is_told() {
+    let rows = |from: f64, to: f64, lost: std::ops::Range<f64>| {
+        let times = (0..).map(move |k| from + f64::from(k) * 0.02).take_while(move |t| *t < to);
+        let times = times.filter(move |t| !lost.contains(t));
+        Series::new(times.map(|t| ((t * 1e9) as i64, flight(t))))
+    };
+    let options = Options { clock: Clock::Truth, ..options() };
+    for (series, share) in [
+        (rows(0.0, LASTS, 0.0..0.0), 1.0),
+        (rows(25.0, LASTS, 0.0..0.0), 15.0 / LASTS),
+        (rows(0.0, LASTS, 10.0..30.0), 0.5),
+        (rows(-30.0, LASTS + 50.0, 10.0..30.0), 0.5),
+    ] {
+        let figures = judged(flight, &series, &options).unwrap().figures;
+        assert!((figures.coverage - share).abs() < 0.002, "{share}: {}", figures.coverage);
+    }
+}
+
+#[test]
+fn a_turned_world_and_body_are_found_and_named() {
+    let (world, body) = (exp(DVec3::new(0.1, 0.2, 0.6)), exp(DVec3::new(0.0, 0.17, 0.0)));
+    let rows = (0..2000).map(|k| k as f64 * 0.02).map(|t| ((t * 1e9) as i64 + 300_000_000_000, Attitude::from_quat(world * flight(t).q * body)));
+    let series = Series::new(rows);
+    let given = judged(flight, &series, &options()).unwrap();
+    assert!(given.figures.errors.rms_deg > 20.0 && given.figures.clock_certain);
+    let (turned, rms) = given.turned.unwrap();
+    assert!(rms < 0.05 && (turned.body_deg - 0.17f64.to_degrees()).abs() < 0.1, "{turned:?} {rms}");
+    let aligned = judged(flight, &series, &Options { align: Align::Frames, ..options() }).unwrap().figures;
+    let angles = aligned.aligned.unwrap();
+    let expected = DVec3::new(0.1, 0.2, 0.6).length().to_degrees();
+    assert!((angles.world_deg - expected).abs() < 0.1 && aligned.errors.rms_deg < 0.05, "{angles:?}");
+    assert!((aligned.clock_offset_s.unwrap() - 300.0).abs() < 0.001);
+}

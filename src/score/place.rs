@@ -1,0 +1,218 @@
+//! When estimates held: on the truth's clock, or on one of their own and by how much that is ahead.
+
+use super::bench::{Bench, DELAYS};
+use super::delay::{self, Fit};
+use super::looks::{BAD, SHARE};
+use super::offset::{self, Doubt, Match};
+use super::series::Series;
+use crate::time::SimTime;
+
+/// What clock the times of estimates are of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clock {
+    /// The truth's: an estimate is late by its delay, from half a second early to two seconds late.
+    #[default]
+    Truth,
+    /// The truth's, exactly: each time is that of the newest sample an estimate rests on.
+    Sample,
+    /// One of which nothing is known, such as a log's since some boot. [`Options::until`](super::Options) has to be
+    /// finite.
+    Other,
+    /// The one of the two that the motion, or the times themselves, leave no doubt about.
+    Auto,
+}
+
+/// A delay up to which an estimate is taken to be on the truth's clock whatever its times, ns.
+const PLAIN: std::ops::Range<i64> = -100_000_000..500_000_000;
+/// Times that begin and end as near to the truth's are the truth's, ns.
+const TOGETHER: i64 = 50_000_000;
+/// An offset whose standard error is above this is not certain, ns.
+const SHARP: f64 = 1_600_000.0;
+/// Offsets that change a figure by no more than this share of it, or this much (rad), need not be told apart.
+const ALIKE: (f64, f64) = (0.03, 0.02 * std::f64::consts::PI / 180.0);
+/// As many offsets are tried where any could be.
+const TRIED: i64 = 33;
+/// Of what can overlap, the share that such an offset has to.
+const OVERLAP: f64 = 0.9;
+/// As many estimates are looked at for that.
+const LOOKED_AT: usize = 600;
+/// An estimate that is read as by a mistake is looked at whole up to so many rows.
+const ROWS: usize = 60_000;
+
+/// Where a series lies in time.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Placed {
+    /// Whether its clock is another than the truth's.
+    pub other: bool,
+    /// How much its clock is ahead, its delay included, ns; 0 on the truth's.
+    pub ahead: i64,
+    /// The standard error of that, ns.
+    pub error: Option<f64>,
+    /// Whether there is no doubt about the clock.
+    pub certain: bool,
+    /// How it is known, for the user.
+    pub note: Option<String>,
+    /// The delay on the truth's clock.
+    pub delay: Option<Fit>,
+}
+
+impl Placed {
+    /// On the truth's clock.
+    pub fn on_truths(delay: Option<Fit>) -> Placed {
+        Placed { other: false, ahead: 0, error: None, certain: true, note: None, delay }
+    }
+}
+
+/// A mistake of axes, order or sign with the estimates as they are without it.
+pub(super) struct Undone<'a> {
+    /// After "estimate looks".
+    pub name: &'static str,
+    /// At most so many of the estimates, as [`Series::thinned`] takes them.
+    pub thinned: Box<dyn Fn(usize) -> Series + 'a>,
+}
+
+/// Where a series lies in time, or why that cannot be told.
+pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> Result<Placed, String> {
+    match bench.options.clock {
+        Clock::Sample => return Ok(Placed::on_truths(Some(Fit::EXACT))),
+        Clock::Truth => return Ok(Placed::on_truths(bench.delay(series))),
+        Clock::Other | Clock::Auto => {}
+    }
+    let found = offset::find(&bench.grid, series);
+    let clear = |found: &Option<Match>| found.as_ref().is_some_and(|found| found.doubt.is_none());
+    let found = if clear(&found) { found } else { of_a_mistake(bench, series, mistakes).or(found) };
+    if let Some(found) = found.as_ref().filter(|found| found.doubt.is_none()) {
+        return settle(bench, series, found);
+    }
+    if bench.options.clock == Clock::Auto && together(bench, series) {
+        let note = "its times begin and end with the truth's, and are taken for them".to_string();
+        return Ok(Placed { note: Some(note), ..Placed::on_truths(bench.delay(series)) });
+    }
+    indifferent(bench, series, found.as_ref())
+}
+
+/// Whether the times begin and end with the truth's.
+fn together(bench: &Bench<'_>, series: &Series) -> bool {
+    let times = series.times();
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return false };
+    let near = TOGETHER.max(2 * series.median_interval().unwrap_or(0));
+    let apart = |a: i64, b: i64| a.saturating_sub(b).saturating_abs();
+    apart(first, bench.options.from.0) <= near && apart(last, bench.options.until.0) <= near
+}
+
+/// A clear match, to a microsecond.
+fn settle(bench: &Bench<'_>, series: &Series, found: &Match) -> Result<Placed, String> {
+    let exact = |t: i64| bench.around(t);
+    let fit = delay::near(&bench.grid, &exact, series, found.offset, 2 * found.width, found.free);
+    let plain = if together(bench, series) { DELAYS } else { PLAIN };
+    if bench.options.clock == Clock::Auto && plain.contains(&fit.delay) {
+        let delay = if found.free { fit } else { bench.delay(series).unwrap_or(fit) };
+        return Ok(Placed::on_truths(Some(delay)));
+    }
+    let mut placed = Placed {
+        other: true,
+        ahead: fit.delay,
+        error: Some(fit.error),
+        certain: fit.doubt.is_none() && fit.error <= SHARP,
+        note: None,
+        delay: None,
+    };
+    if placed.certain {
+        return Ok(placed);
+    }
+    let reach = (3.0 * fit.error).min(2.0 * found.width as f64) as i64;
+    let (least, most) = spread(bench, series, [-reach, 0, reach].map(|off| fit.delay + off));
+    let around = format!(
+        "its clock is {:.3} s ahead of the truth's, give or take {:.3} s",
+        seconds(fit.delay),
+        reach as f64 * 1e-9
+    );
+    if is_alike(least, most) {
+        placed.note = Some(format!("{around}; that changes the figures by less than 3 %"));
+        return Ok(placed);
+    }
+    Err(format!(
+        "{around}: that leaves {:.3} to {:.3} deg RMS",
+        least.to_degrees(),
+        most.to_degrees()
+    ))
+}
+
+/// The match that is clear once a mistake is undone, where that also explains the error.
+fn of_a_mistake(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> Option<Match> {
+    let thin = series.thinned(ROWS);
+    let tried = mistakes.iter().filter_map(|mistake| {
+        let undone = (mistake.thinned)(ROWS);
+        let found = offset::find(&bench.grid, &undone).filter(|found| found.doubt.is_none() && !found.free)?;
+        let given = bench.rms(&thin.thinned(LOOKED_AT), found.offset)?;
+        let rms = bench.rms(&undone.thinned(LOOKED_AT), found.offset)?;
+        (rms < BAD && rms < SHARE * given).then_some((rms, found))
+    });
+    tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
+}
+
+/// Where nothing tells the offset, but it makes no difference.
+fn indifferent(bench: &Bench<'_>, series: &Series, found: Option<&Match>) -> Result<Placed, String> {
+    let thin = series.thinned(LOOKED_AT);
+    let offsets = match found {
+        Some(found) if found.doubt == Some(Doubt::Repeats) => {
+            std::iter::once(found.offset).chain(found.rivals.iter().copied()).collect()
+        }
+        _ => anywhere(bench, series),
+    };
+    let (least, most) = spread(bench, &thin, offsets.iter().copied());
+    if !offsets.is_empty() && least.is_finite() && is_alike(least, most) {
+        let note = "its clock is not known, but whatever it is the figures are the same within 3 %".to_string();
+        let ahead = offsets[0];
+        return Ok(Placed { other: true, ahead, error: None, certain: false, note: Some(note), delay: None });
+    }
+    Err(why(found, least, most))
+}
+
+fn why(found: Option<&Match>, least: f64, most: f64) -> String {
+    let range = match least.is_finite() {
+        true => format!(": that leaves {:.3} to {:.3} deg RMS", least.to_degrees(), most.to_degrees()),
+        false => String::new(),
+    };
+    match found {
+        Some(found) if found.doubt == Some(Doubt::Repeats) => {
+            let shown = std::iter::once(found.offset).chain(found.rivals.iter().copied()).take(3);
+            let shown: Vec<_> = shown.map(|offset| format!("{:.2} s", seconds(offset))).collect();
+            let more = (found.rivals.len() + 1).saturating_sub(shown.len());
+            let more = if more > 0 { format!(" or {more} more") } else { String::new() };
+            format!("the motion repeats, so its clock may be {}{more} ahead of the truth's{range}", shown.join(", "))
+        }
+        Some(found) if found.doubt == Some(Doubt::Unlike) => {
+            format!("at no offset of its clock does it follow the truth's motion{range}")
+        }
+        _ => format!("the motion is too even to tell by how much its clock is ahead of the truth's{range}"),
+    }
+}
+
+/// Offsets at which the two overlap about as much as they can, the first that of both beginnings.
+fn anywhere(bench: &Bench<'_>, series: &Series) -> Vec<i64> {
+    let times = series.times();
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Vec::new() };
+    let (from, until) = (bench.options.from.0, bench.options.until.0);
+    let (ours, theirs) = ((until - from) as f64, last.saturating_sub(first) as f64);
+    let lost = (1.0 - OVERLAP) * ours.min(theirs);
+    let (a, b) = (first.saturating_sub(from), last.saturating_sub(until));
+    let (low, high) = (a.min(b).saturating_sub(lost as i64), a.max(b).saturating_add(lost as i64));
+    let step = (high.saturating_sub(low) / (TRIED - 1)).max(1);
+    std::iter::once(a).chain((0..TRIED).map(|i| low + i * step)).collect()
+}
+
+/// The least and the largest root mean square at some offsets, rad.
+fn spread(bench: &Bench<'_>, series: &Series, offsets: impl IntoIterator<Item = i64>) -> (f64, f64) {
+    let thin = series.thinned(LOOKED_AT);
+    let all = offsets.into_iter().map(|offset| bench.rms(&thin, offset).unwrap_or(f64::INFINITY));
+    all.fold((f64::INFINITY, 0.0f64), |(least, most), rms| (least.min(rms), most.max(rms)))
+}
+
+fn is_alike(least: f64, most: f64) -> bool {
+    most - least <= (ALIKE.0 * most).max(ALIKE.1)
+}
+
+fn seconds(ns: i64) -> f64 {
+    SimTime(ns).seconds()
+}
