@@ -9,7 +9,7 @@
 //! the one turned by the rotation that brings them together ([`Products::best_turn`]).
 //!
 //! Near the minimum a residual is `r_i ≈ g_i·d`, so the standard error is `√Σ_b (Σ_{i∈b} g_i·r_i)² / Σ|g_i|²` with the
-//! pairs in blocks `b` of a second or more, within which residuals are not independent (H. White, *A
+//! pairs in blocks `b` of five seconds or more, within which residuals are not independent (H. White, *A
 //! heteroskedasticity-consistent covariance matrix estimator*, Econometrica 48(4), 1980).
 
 use super::sampled::Sampled;
@@ -30,10 +30,14 @@ const LEAST_TURN: f64 = 1.0;
 const FINE: i64 = 1000;
 /// The step over which the motion's change is taken, ns.
 const SLOPE: i64 = 2_000_000;
-/// Residuals beyond so many times their median count as if they were there: a heading that jumps, a reset.
-const BEYOND: f64 = 6.0;
+/// Residuals beyond so many times what nine of ten keep to count as if they were there: a heading that jumps, a reset.
+const BEYOND: f64 = 3.0;
 /// A motion whose rate changes by less than this says nothing of time, rad/s².
 const LEAST_CHANGE: f64 = 0.003;
+/// Within so many ns residuals are not independent: an estimate wanders over seconds.
+const BLOCK: i64 = 5_000_000_000;
+/// Of so many blocks the standard error is taken twice.
+const FEW_BLOCKS: f64 = 3.0;
 /// A delay whose standard error is above this is not told, ns.
 const WORST: f64 = 20e6;
 /// Of what the estimate turns, the share that the truth has to explain.
@@ -142,22 +146,22 @@ impl Pairs {
         self.truths(truth, delay).iter().flatten().count()
     }
 
-    /// Where residuals end to count in a window, by their medians at its ends: within it, those that only tell that
-    /// the delay is another all count.
+    /// Where residuals end to count in a window, by those at its ends: within it, what only tells that the delay is
+    /// another counts in full.
     fn cap(&self, truth: At<'_>, window: &Range<i64>) -> f64 {
-        let ends = [window.start, window.end].map(|delay| self.median(truth, delay));
-        BEYOND * ends[0].max(ends[1]) + 1e-6
+        let ends = [window.start, window.end].map(|delay| self.most(truth, delay));
+        ends[0].max(ends[1])
     }
 
-    /// The median size of a residual; infinite where there is none.
-    fn median(&self, truth: At<'_>, delay: i64) -> f64 {
+    /// The size of a residual beyond which it is a jump, rad/s: so many times what nine of ten keep to.
+    fn most(&self, truth: At<'_>, delay: i64) -> f64 {
         let mut sizes: Vec<f64> =
             self.residuals(truth, delay).iter().flatten().map(|r| r.length()).collect();
-        let middle = sizes.len() / 2;
+        let ninth = sizes.len() * 9 / 10;
         if sizes.is_empty() {
             return f64::INFINITY;
         }
-        *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+        BEYOND * *sizes.select_nth_unstable_by(ninth, f64::total_cmp).1 + 1e-6
     }
 
     /// The least cost within a window, to a microsecond, by golden sections.
@@ -169,35 +173,67 @@ impl Pairs {
 
     /// The standard error of a delay, ns, and why it should not be believed.
     fn told(&self, truth: At<'_>, delay: i64) -> (f64, Option<&'static str>) {
-        let cap = BEYOND * self.median(truth, delay) + 1e-6;
+        let cap = self.most(truth, delay);
         let [here, before, after] =
             [0, -SLOPE, SLOPE].map(|step| self.residuals(truth, delay.saturating_add(step)));
-        let (mut blocks, mut block, mut current) = (0.0, 0.0, i64::MIN);
-        let (mut square, mut slopes, mut turned, mut count) = (0.0, 0.0, 0.0, 0.0);
+        let mut sums = Slopes::new((2 * self.span).max(BLOCK));
         for (i, pair) in self.pairs.iter().enumerate() {
             let (Some(r), Some(a), Some(b)) = (here[i], before[i], after[i]) else { continue };
-            if r.length() > cap {
-                continue;
+            if r.length() <= cap {
+                let span = (pair[1].0 - pair[0].0) as f64 * 1e-9;
+                let turned = log(pair[0].1.conjugate() * pair[1].1) / span;
+                sums.add(pair[0].0, r, (b - a) / (2.0 * SLOPE as f64 * 1e-9), turned);
             }
-            let slope = (b - a) / (2.0 * SLOPE as f64 * 1e-9);
-            let number = pair[0].0.div_euclid((2 * self.span).max(1_000_000_000));
-            if number != current {
-                blocks += block * block;
-                (block, current) = (0.0, number);
-            }
-            block += slope.dot(r);
-            square += slope.length_squared();
-            slopes += r.length_squared();
-            let span = (pair[1].0 - pair[0].0) as f64 * 1e-9;
-            turned += (log(pair[0].1.conjugate() * pair[1].1) / span).length_squared();
-            count += 1.0;
         }
-        blocks += block * block;
-        if count < 2.0 || libm::sqrt(square / count) < LEAST_CHANGE {
+        sums.told()
+    }
+}
+
+/// The sums that the standard error comes from.
+struct Slopes {
+    block: i64,
+    number: i64,
+    current: f64,
+    weight: f64,
+    blocks: f64,
+    weights: f64,
+    slopes: f64,
+    residuals: f64,
+    turned: f64,
+    count: f64,
+}
+
+impl Slopes {
+    fn new(block: i64) -> Slopes {
+        let [current, weight, blocks, weights, slopes, residuals, turned, count] = [0.0; 8];
+        Slopes { block, number: i64::MIN, current, weight, blocks, weights, slopes, residuals, turned, count }
+    }
+
+    /// A pair from `t` on: what it differs by, how that changes with the delay, and what the estimate turned.
+    fn add(&mut self, t: i64, r: DVec3, slope: DVec3, turned: DVec3) {
+        let number = t.div_euclid(self.block);
+        if number != self.number {
+            self.blocks += self.current * self.current;
+            self.weights += self.weight * self.weight;
+            (self.current, self.weight, self.number) = (0.0, 0.0, number);
+        }
+        self.current += slope.dot(r);
+        self.weight += slope.length_squared();
+        self.slopes += slope.length_squared();
+        self.residuals += r.length_squared();
+        self.turned += turned.length_squared();
+        self.count += 1.0;
+    }
+
+    fn told(&self) -> (f64, Option<&'static str>) {
+        if self.count < 2.0 || libm::sqrt(self.slopes / self.count) < LEAST_CHANGE {
             return (f64::INFINITY, Some(TOO_EVEN));
         }
-        let error = libm::sqrt(blocks) / square * 1e9;
-        let loose = error > WORST || slopes > (1.0 - LEAST_SHARE) * turned;
+        let error = libm::sqrt(self.blocks + self.current * self.current) / self.slopes * 1e9;
+        // A motion that is all in a few blocks tells little of how residuals scatter.
+        let blocks = self.slopes * self.slopes / (self.weights + self.weight * self.weight);
+        let error = error * (1.0 + FEW_BLOCKS / blocks);
+        let loose = error > WORST || self.residuals > (1.0 - LEAST_SHARE) * self.turned;
         (error, loose.then_some(TOO_LOOSE))
     }
 }
@@ -223,30 +259,40 @@ fn golden(window: Range<i64>, cost: impl Fn(i64) -> f64) -> i64 {
     i64::midpoint(low, high)
 }
 
-/// The delay near one that is known to `reach` ns: with the span that makes it most certain.
-pub(super) fn near(grid: &Sampled, exact: At<'_>, series: &Series, about: i64, reach: i64, free: bool) -> Fit {
+/// The delay within a window (ns): with the span that makes it most certain.
+///
+/// Every `step` ns is looked at first: where other dips are nearly as deep, as vibration has them a period apart, the
+/// delay is no more certain than they are near.
+pub(super) fn near(grid: &Sampled, exact: At<'_>, series: &Series, window: &Range<i64>, step: i64, free: bool) -> Fit {
     let on_grid: At<'_> = &|t| grid.at(t);
-    let found = |pairs: &Pairs, about: i64, reach: i64| {
-        let delay = pairs.refine(on_grid, about - reach..about + reach);
+    let found = |pairs: &Pairs, window: Range<i64>| {
+        let delay = pairs.refine(on_grid, window);
         let (error, doubt) = pairs.told(on_grid, delay);
         Fit { delay, error, doubt }
     };
     let spans = if free { &SPANS[..1] } else { &SPANS[..] };
-    let tried = spans.iter().map(|&span| {
+    let tried = spans.iter().filter_map(|&span| {
         let span = limited(grid, span, free);
-        (span, found(&Pairs::new(series, span, free, FEW), about, reach))
+        let pairs = Pairs::new(series, span, free, FEW);
+        let (best, rival) = pairs.deepest(on_grid, window, step)?;
+        let mut fit = found(&pairs, best - step..best + step);
+        fit.error = fit.error.max(rival);
+        Some((span, rival, fit))
     });
     let doubtful = |fit: &Fit| (fit.doubt.is_some(), fit.error);
-    let best = tried.min_by(|(_, a), (_, b)| {
+    let best = tried.min_by(|(.., a), (.., b)| {
         let ((a, x), (b, y)) = (doubtful(a), doubtful(b));
         a.cmp(&b).then(x.total_cmp(&y))
     });
-    let Some((span, fit)) = best else { return Fit { delay: about, error: f64::INFINITY, doubt: Some(TOO_EVEN) } };
+    let Some((span, rival, fit)) = best else {
+        return Fit { delay: i64::midpoint(window.start, window.end), error: f64::INFINITY, doubt: Some(TOO_EVEN) };
+    };
     let pairs = Pairs::new(series, span, free, MANY);
-    let mut fit = found(&pairs, fit.delay, reach / 2);
+    let mut fit = found(&pairs, fit.delay - step..fit.delay + step);
+    fit.error = fit.error.max(rival);
     if fit.doubt.is_none() {
         // The grid's chords are right to microseconds; the truth itself is exact.
-        fit.delay = pairs.refine(exact, fit.delay - reach / 16..fit.delay + reach / 16);
+        fit.delay = pairs.refine(exact, fit.delay - step / 16..fit.delay + step / 16);
     }
     fit
 }
@@ -254,6 +300,38 @@ pub(super) fn near(grid: &Sampled, exact: At<'_>, series: &Series, about: i64, r
 /// As many pairs tell which span is best, and as many the delay.
 const FEW: usize = 400;
 const MANY: usize = 1500;
+/// Another dip counts if it is less than so many times as deep.
+const RIVAL: f64 = 2.0;
+/// A residual that is nothing, rad/s.
+const NOTHING: f64 = 1e-4;
+
+impl Pairs {
+    /// The deepest dip on a grid of delays, and how far away the furthest that is nearly as deep is, ns.
+    fn deepest(&self, truth: At<'_>, window: &Range<i64>, step: i64) -> Option<(i64, f64)> {
+        let delays: Vec<i64> = (0..=(window.end - window.start) / step).map(|i| window.start + i * step).collect();
+        let most = delays.iter().step_by(8).map(|&delay| self.count(truth, delay)).max()?;
+        let cap = self.cap(truth, window);
+        let cost = |&delay: &i64| self.cost(truth, delay, cap, most).unwrap_or(f64::INFINITY);
+        let costs: Vec<f64> = delays.iter().map(cost).collect();
+        let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).filter(|&i| costs[i].is_finite())?;
+        let at = |i: usize| costs.get(i).copied().unwrap_or(f64::INFINITY);
+        let is_dip = |i: &usize| at(*i) <= at(*i + 1) && (*i == 0 || at(*i) <= at(*i - 1));
+        let deep = RIVAL * (costs[best] + NOTHING * NOTHING);
+        let rivals = (0..costs.len()).filter(|&i| i.abs_diff(best) > 1 && costs[i] < deep).filter(is_dip);
+        let away = rivals.map(|i| delays[i].abs_diff(delays[best])).max();
+        Some((delays[best], away.unwrap_or(0) as f64))
+    }
+}
+
+/// The mean square of what estimate and truth differ by over the shortest span, at the best delay near one, (rad/s)².
+pub(super) fn apart(grid: &Sampled, series: &Series, window: &Range<i64>, step: i64, free: bool) -> f64 {
+    let on_grid: At<'_> = &|t| grid.at(t);
+    let pairs = Pairs::new(series, limited(grid, SPANS[0], free), free, FEW);
+    let Some((best, _)) = pairs.deepest(on_grid, window, step) else { return f64::INFINITY };
+    let delay = pairs.refine(on_grid, best - step..best + step);
+    let cap = pairs.most(on_grid, delay);
+    pairs.cost(on_grid, delay, cap, 0).unwrap_or(f64::INFINITY)
+}
 
 /// A span over which rates can be compared.
 fn limited(grid: &Sampled, span: i64, free: bool) -> i64 {
@@ -272,7 +350,11 @@ pub(super) fn within(grid: &Sampled, exact: At<'_>, series: &Series, window: Ran
     let cost = |&delay: &i64| pairs.cost(on_grid, delay, f64::INFINITY, most).unwrap_or(f64::INFINITY);
     let costs: Vec<f64> = delays.iter().map(cost).collect();
     let best = least(&delays, &costs)?;
-    let mut fit = near(grid, exact, series, delays[best], step, false);
+    let mut fit = near(grid, exact, series, &(delays[best] - step..delays[best] + step), step, false);
+    if 3.0 * fit.error > step as f64 {
+        // What wanders moves the dip of one span by more than a step.
+        fit = near(grid, exact, series, &(delays[best] - 20 * step..delays[best] + 20 * step), step, false);
+    }
     if best == 0 || best + 1 == delays.len() {
         fit.doubt = fit.doubt.or(Some(AT_THE_END));
     }

@@ -27,8 +27,14 @@ const LEAST_SHARE: f64 = 0.5;
 const RIVAL_INFORMATION: f64 = 0.25;
 /// and is apart by less than so many times what the best is.
 const RIVAL_APART: f64 = 2.0;
+/// The body's axes may be turned if that brings the two nearer on the grid by so many times.
+const TURNED_APART: f64 = 2.0;
 /// The overlap is this share of the shorter of the two at the least.
 const LEAST_OVERLAP: f64 = 0.1;
+/// A truth that never turns faster tells nothing of time, rad/s.
+const LEAST_RATE: f64 = 0.01;
+/// Nor does one that agrees as well over so many ns.
+const WIDEST: i64 = 2_000_000_000;
 /// Of rivals as many are kept.
 const RIVALS: usize = 64;
 
@@ -37,10 +43,14 @@ const RIVALS: usize = 64;
 pub(super) struct Match {
     /// How much the estimate's clock is ahead of the truth's, ns.
     pub offset: i64,
-    /// To about how much, ns.
-    pub width: i64,
+    /// A cell of the grid, ns.
+    pub cell: i64,
+    /// Where it lies for all that the grid shows, ns.
+    pub within: Range<i64>,
     /// Whether the body's axes had to be turned.
     pub free: bool,
+    /// What the two have in common there.
+    pub alike: Alike,
     /// Other offsets at which the motion agrees about as well, ns, the nearest to [`Match::offset`] first.
     pub rivals: Vec<i64>,
     /// Why it should not be believed.
@@ -58,21 +68,37 @@ pub(super) enum Doubt {
     Repeats,
 }
 
-/// The best match over every offset; `None` where there is nothing to compare.
-pub(super) fn find(truth: &Sampled, series: &Series) -> Option<Match> {
-    let mut best: Option<Match> = None;
+/// The best matches over every offset.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    /// With the body's axes as they are.
+    pub fixed: Match,
+    /// With the body's axes turned, where that brings the two much nearer on the grid.
+    pub free: Option<Match>,
+}
+
+impl Found {
+    /// What is known of the better of the two.
+    fn rank(&self) -> u8 {
+        rank(self.fixed.doubt).max(self.free.as_ref().map_or(0, |free| rank(free.doubt)))
+    }
+}
+
+/// The best matches over every offset; `None` where there is nothing to compare.
+pub(super) fn find(truth: &Sampled, series: &Series) -> Option<Found> {
+    let mut best: Option<Found> = None;
     for width in WIDTHS {
         let Some((truth, estimate)) = rates(truth, series, width) else { continue };
         let sums = Sums::new(&truth, &estimate);
-        for free in [false, true] {
-            let found = of_sums(&sums, &truth, &estimate, free)?;
-            if found.doubt.is_none() {
-                return Some(found);
-            }
-            let better = |best: &Match| rank(found.doubt) > rank(best.doubt);
-            if best.as_ref().is_none_or(better) {
-                best = Some(found);
-            }
+        let Some(fixed) = of_sums(&sums, &truth, &estimate, false) else { continue };
+        let is_turned = |free: &Match| fixed.alike.worse_than(&free.alike) > TURNED_APART;
+        let free = of_sums(&sums, &truth, &estimate, true).filter(is_turned);
+        let found = Found { fixed, free };
+        if found.fixed.doubt.is_none() {
+            return Some(found);
+        }
+        if best.as_ref().is_none_or(|best| found.rank() > best.rank()) {
+            best = Some(found);
         }
     }
     best
@@ -120,16 +146,18 @@ fn of_sums(sums: &Sums, truth: &Rates, estimate: &Rates, free: bool) -> Option<M
         .collect();
     rivals.sort_by_key(|&i| i.abs_diff(best));
     rivals.truncate(RIVALS);
-    let turns = here.squares[0].min(here.squares[1]) > 1e-4;
     let nats = tells(best) * step as f64 / STEP as f64;
     let doubt = match () {
-        () if !turns || (lobe.end - lobe.start) as i64 * step > 2_000_000_000 => Some(Doubt::TooEven),
+        () if truth.fastest() < LEAST_RATE => Some(Doubt::TooEven),
+        () if here.share() >= LEAST_SHARE && (lobe.end - lobe.start) as i64 * step > WIDEST => Some(Doubt::TooEven),
         () if nats < LEAST_INFORMATION || here.share() < LEAST_SHARE => Some(Doubt::Unlike),
         () if !rivals.is_empty() => Some(Doubt::Repeats),
         () => None,
     };
     let offset = |i: usize| sums.ahead(i) * step;
-    Some(Match { offset: offset(best), width: step, free, rivals: rivals.into_iter().map(offset).collect(), doubt })
+    let within = offset(lobe.start) - 2 * step..offset(lobe.end - 1) + 2 * step;
+    let rivals = rivals.into_iter().map(offset).collect();
+    Some(Match { offset: offset(best), cell: step, within, free, alike: here, rivals, doubt })
 }
 
 /// Overlaps of fewer cells are not looked at.

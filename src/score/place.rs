@@ -1,9 +1,9 @@
 //! When estimates held: on the truth's clock, or on one of their own and by how much that is ahead.
 
-use super::bench::{Bench, DELAYS};
+use super::bench::{Bench, DELAYS, STEP};
 use super::delay::{self, Fit};
 use super::looks::{BAD, SHARE};
-use super::offset::{self, Doubt, Match};
+use super::offset::{self, Doubt, Found, Match};
 use super::series::Series;
 use crate::time::SimTime;
 
@@ -27,7 +27,7 @@ const PLAIN: std::ops::Range<i64> = -100_000_000..500_000_000;
 /// Times that begin and end as near to the truth's are the truth's, ns.
 const TOGETHER: i64 = 50_000_000;
 /// An offset whose standard error is above this is not certain, ns.
-const SHARP: f64 = 1_600_000.0;
+const SHARP: f64 = 1_000_000.0;
 /// Offsets that change a figure by no more than this share of it, or this much (rad), need not be told apart.
 const ALIKE: (f64, f64) = (0.03, 0.02 * std::f64::consts::PI / 180.0);
 /// As many offsets are tried where any could be.
@@ -78,9 +78,9 @@ pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>])
         Clock::Truth => return Ok(Placed::on_truths(bench.delay(series))),
         Clock::Other | Clock::Auto => {}
     }
-    let found = offset::find(&bench.grid, series);
-    let clear = |found: &Option<Match>| found.as_ref().is_some_and(|found| found.doubt.is_none());
-    let found = if clear(&found) { found } else { of_a_mistake(bench, series, mistakes).or(found) };
+    let found = best_match(bench, series);
+    let is_unlike = found.as_ref().is_some_and(|found| found.doubt == Some(Doubt::Unlike));
+    let found = if is_unlike { of_a_mistake(bench, series, mistakes).or(found) } else { found };
     if let Some(found) = found.as_ref().filter(|found| found.doubt.is_none()) {
         return settle(bench, series, found);
     }
@@ -90,6 +90,25 @@ pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>])
     }
     indifferent(bench, series, found.as_ref())
 }
+
+/// The best match; that with the body's axes turned where these really are: what is off by part of a cell of the grid
+/// only looks so.
+fn best_match(bench: &Bench<'_>, series: &Series) -> Option<Match> {
+    let Found { fixed, free } = offset::find(&bench.grid, series)?;
+    let Some(free) = free else { return Some(fixed) };
+    let apart = |found: &Match| delay::apart(&bench.grid, series, &found.within, step(found), found.free);
+    Some(if apart(&fixed) > TURNED_APART * apart(&free) + NOTHING { free } else { fixed })
+}
+
+/// The body's axes are turned if that brings the two nearer by so many times.
+const TURNED_APART: f64 = 4.0;
+/// How finely the delays of a match are looked at, ns.
+fn step(found: &Match) -> i64 {
+    STEP.max((found.within.end - found.within.start) / 400)
+}
+
+/// Rates that differ by less are the same, (rad/s)².
+const NOTHING: f64 = 1e-5;
 
 /// Whether the times begin and end with the truth's.
 fn together(bench: &Bench<'_>, series: &Series) -> bool {
@@ -103,11 +122,10 @@ fn together(bench: &Bench<'_>, series: &Series) -> bool {
 /// A clear match, to a microsecond.
 fn settle(bench: &Bench<'_>, series: &Series, found: &Match) -> Result<Placed, String> {
     let exact = |t: i64| bench.around(t);
-    let fit = delay::near(&bench.grid, &exact, series, found.offset, 2 * found.width, found.free);
+    let fit = delay::near(&bench.grid, &exact, series, &found.within, step(found), found.free);
     let plain = if together(bench, series) { DELAYS } else { PLAIN };
     if bench.options.clock == Clock::Auto && plain.contains(&fit.delay) {
-        let delay = if found.free { fit } else { bench.delay(series).unwrap_or(fit) };
-        return Ok(Placed::on_truths(Some(delay)));
+        return Ok(Placed::on_truths(Some(fit)));
     }
     let mut placed = Placed {
         other: true,
@@ -120,7 +138,7 @@ fn settle(bench: &Bench<'_>, series: &Series, found: &Match) -> Result<Placed, S
     if placed.certain {
         return Ok(placed);
     }
-    let reach = (3.0 * fit.error).min(2.0 * found.width as f64) as i64;
+    let reach = (3.0 * fit.error).min((found.within.end - found.within.start) as f64) as i64;
     let (least, most) = spread(bench, series, [-reach, 0, reach].map(|off| fit.delay + off));
     let around = format!(
         "its clock is {:.3} s ahead of the truth's, give or take {:.3} s",
@@ -143,7 +161,10 @@ fn of_a_mistake(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> 
     let thin = series.thinned(ROWS);
     let tried = mistakes.iter().filter_map(|mistake| {
         let undone = (mistake.thinned)(ROWS);
-        let found = offset::find(&bench.grid, &undone).filter(|found| found.doubt.is_none() && !found.free)?;
+        let found = offset::find(&bench.grid, &undone)?.fixed;
+        if found.doubt.is_some() {
+            return None;
+        }
         let given = bench.rms(&thin.thinned(LOOKED_AT), found.offset)?;
         let rms = bench.rms(&undone.thinned(LOOKED_AT), found.offset)?;
         (rms < BAD && rms < SHARE * given).then_some((rms, found))
@@ -158,6 +179,7 @@ fn indifferent(bench: &Bench<'_>, series: &Series, found: Option<&Match>) -> Res
         Some(found) if found.doubt == Some(Doubt::Repeats) => {
             std::iter::once(found.offset).chain(found.rivals.iter().copied()).collect()
         }
+        Some(found) if found.doubt == Some(Doubt::Unlike) => Vec::new(),
         _ => anywhere(bench, series),
     };
     let (least, most) = spread(bench, &thin, offsets.iter().copied());
