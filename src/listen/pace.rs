@@ -1,0 +1,280 @@
+//! The interval of a row of times: as it is between losses, whatever the losses, the jitter and the steps of the clock.
+//! Memory is fixed.
+
+use crate::report::Times;
+
+/// Steps looked at before the first interval is told.
+const EARLY: usize = 16;
+
+/// How much of a sample's distance from its place the next place keeps. With less, a late sample and the early one
+/// behind it look like a gap; with all of it, the places would not follow a clock that drifts.
+const KEPT: f64 = 0.75;
+
+/// A step of the clock is longer than this, ns, …
+const SHORTEST_JUMP: i64 = 1_000_000_000;
+
+/// … and longer than so many intervals.
+const JUMP: f64 = 100.0;
+
+/// Steps from one sample time to the next, all forward.
+///
+/// Each sample has its place on a grid that follows the stream: the number of intervals to it is that of places passed.
+/// Their sum is what the interval is found from, `span / places`, so a gap changes nothing. A jump of the clock is left
+/// out.
+#[derive(Clone, Debug)]
+pub(super) struct Pace {
+    steps: Times,
+    /// The first ones, until the interval is known, and whether each may be a jump.
+    early: Vec<(i64, bool)>,
+    /// ns; 0 until it is known.
+    interval: f64,
+    /// All placed steps together, ns, and the places that they passed.
+    span: i64,
+    places: u64,
+    /// How far the newest sample is behind its place, in intervals.
+    late: f64,
+    jumps: u64,
+    longest_jump: i64,
+}
+
+impl Pace {
+    pub fn new() -> Pace {
+        Pace {
+            steps: Times::new(),
+            early: Vec::with_capacity(EARLY),
+            interval: 0.0,
+            span: 0,
+            places: 0,
+            late: 0.0,
+            jumps: 0,
+            longest_jump: 0,
+        }
+    }
+
+    /// Takes in a step of more than nothing, ns. `may_jump`: nothing says that as much time went by, so a long step is
+    /// one of the clock.
+    pub fn take(&mut self, step: i64, may_jump: bool) {
+        if self.interval > 0.0 {
+            self.place(step, may_jump);
+            if self.steps.count().is_power_of_two() {
+                self.doubt();
+            }
+            return;
+        }
+        self.early.push((step, may_jump));
+        if self.early.len() == EARLY {
+            self.settle();
+        }
+    }
+
+    /// What there is to tell, from however few steps.
+    pub fn settled(&self) -> Pace {
+        let mut settled = self.clone();
+        settled.settle();
+        settled.doubt();
+        settled
+    }
+
+    /// The places passed a second, Hz.
+    pub fn rate(&self) -> Option<f64> {
+        (self.places > 0).then(|| self.places as f64 * 1e9 / self.span as f64)
+    }
+
+    /// Places passed where no sample was; `None` without a step.
+    pub fn missing(&self) -> Option<u64> {
+        (self.steps.count() > 0).then(|| self.places.saturating_sub(self.steps.count()))
+    }
+
+    /// The steps, jumps left out.
+    pub fn steps(&self) -> &Times {
+        &self.steps
+    }
+
+    /// How often the clock jumped forward, and by how much at most, ns.
+    pub fn jumps(&self) -> (u64, i64) {
+        (self.jumps, self.longest_jump)
+    }
+
+    /// Whether so long a step is too long to be believed of a stream that may have lost samples.
+    pub fn is_long(&self, step: i64) -> bool {
+        step > SHORTEST_JUMP && step as f64 > JUMP * self.interval
+    }
+
+    /// Finds the interval from the first steps and places them.
+    fn settle(&mut self) {
+        let early = std::mem::take(&mut self.early);
+        if early.is_empty() {
+            return;
+        }
+        let mut steps = Times::new();
+        early.iter().for_each(|(step, _)| steps.record(*step));
+        self.interval = fitted(&steps);
+        early.into_iter().for_each(|(step, may_jump)| self.place(step, may_jump));
+    }
+
+    fn place(&mut self, step: i64, may_jump: bool) {
+        if may_jump && self.is_long(step) {
+            self.jumps += 1;
+            self.longest_jump = self.longest_jump.max(step);
+            self.late = 0.0;
+            return;
+        }
+        self.steps.record(step);
+        let passed = step as f64 / self.interval + self.late;
+        let places = passed.round().max(0.0);
+        self.late = KEPT * (passed - places);
+        self.span = self.span.saturating_add(step);
+        self.places += places as u64;
+        if self.places > 0 {
+            self.interval = self.span as f64 / self.places as f64;
+        }
+    }
+
+    /// Begins anew from all steps where the first ones were not like the others.
+    fn doubt(&mut self) {
+        if self.steps.count() == 0 {
+            return;
+        }
+        let fitted = fitted(&self.steps);
+        if !(0.7..1.4).contains(&(fitted / self.interval)) {
+            let places: f64 = values(&self.steps).map(|(step, count)| places(step, fitted) * count).sum();
+            (self.places, self.late) = (places as u64, 0.0);
+            self.interval = self.span as f64 / places;
+        }
+    }
+}
+
+/// Each step that occurred, ns, with its count.
+fn values(steps: &Times) -> impl Iterator<Item = (f64, f64)> {
+    steps.values().into_iter().map(|(us, count)| (1e3 * us, count as f64))
+}
+
+fn places(step: f64, interval: f64) -> f64 {
+    (step / interval).round().max(1.0)
+}
+
+/// The interval of which most steps are one and the others a whole number, ns. It begins with the mean of those near
+/// the median: times in whole ms of a 400 Hz stream have steps of 2 and 3 ms, and none of 2.5.
+fn fitted(steps: &Times) -> f64 {
+    let median = 1e3 * steps.late().map_or(0.0, |late| late.p50);
+    let mean = |of: &mut dyn Iterator<Item = (f64, f64, f64)>| {
+        let (span, places) = of.fold((0.0, 0.0), |(span, places), (step, count, passed)| {
+            (span + step * count, places + passed * count)
+        });
+        span / places
+    };
+    let near = |step: f64| (0.5 * median..1.9 * median).contains(&step);
+    let mut interval = mean(&mut values(steps).filter(|(step, _)| near(*step)).map(|(s, n)| (s, n, 1.0)));
+    for _ in 0..8 {
+        let short = values(steps).filter(|(step, _)| *step < JUMP * interval);
+        let next = mean(&mut short.map(|(step, count)| (step, count, places(step, interval))));
+        if next == interval {
+            break;
+        }
+        interval = next;
+    }
+    interval.max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const MS: i64 = 1_000_000;
+
+    /// The pace of these times, none of which may have jumped.
+    fn pace(times: impl IntoIterator<Item = i64>) -> Pace {
+        let times: Vec<i64> = times.into_iter().collect();
+        let mut pace = Pace::new();
+        times.windows(2).filter(|pair| pair[1] > pair[0]).for_each(|pair| pace.take(pair[1] - pair[0], false));
+        pace.settled()
+    }
+
+    fn is(pace: &Pace, hz: f64, missing: u64) -> bool {
+        (pace.rate().unwrap() / hz - 1.0).abs() < 1e-4 && pace.missing() == Some(missing)
+    }
+
+    #[test]
+    fn a_clock_that_is_off_loses_nothing_however_long() {
+        for ppm in [-20_000, -200, 0, 200, 20_000i64] {
+            let period = MS + ppm;
+            let pace = pace((0..200_000).map(|k| k * period));
+            assert!(is(&pace, 1e9 / period as f64, 0), "{ppm} ppm: {:?} {:?}", pace.rate(), pace.missing());
+        }
+    }
+
+    #[test]
+    fn a_drifting_clock_is_followed() {
+        // From 1 ms to 1.02 ms.
+        let mut t = 0;
+        let pace = pace((0..100_000i64).map(|k| {
+            t += MS + k / 5;
+            t
+        }));
+        assert!(is(&pace, 1e9 / 1.01e6, 0), "{:?} {:?}", pace.rate(), pace.missing());
+    }
+
+    #[test]
+    fn times_coarser_than_the_interval_hide_nothing() {
+        for (hz, unit) in [(400, MS), (600, MS), (300, MS), (1000 / 3, MS), (8000, 1000), (100, 10 * MS)] {
+            let pace = pace((0..20_000).map(|k| k * 1_000_000_000 / hz / unit * unit));
+            assert!(is(&pace, hz as f64, 0), "{hz} Hz: {:?} {:?}", pace.rate(), pace.missing());
+        }
+    }
+
+    #[test]
+    fn one_missing_of_each_twenty_changes_no_rate_and_is_counted() {
+        for unit in [1, MS] {
+            let times = (0..20_000).filter(|k| k % 20 != 7).map(|k| k * 2_500_000 / unit * unit);
+            let pace = pace(times);
+            assert!(is(&pace, 400.0, 1000), "{:?} {:?}", pace.rate(), pace.missing());
+        }
+        let pace = pace((0..100_000).filter(|k| k % 50_000 < 20_000).map(|k| k * MS));
+        assert!(is(&pace, 1000.0, 30_000), "one long gap: {:?}", pace.missing());
+    }
+
+    #[test]
+    fn first_steps_that_are_not_like_the_others_do_not_stay() {
+        let pace = pace((0..20).map(|k| k * 10 * MS).chain((0..50_000).map(|k| 200 * MS + k * MS)));
+        assert!((pace.rate().unwrap() - 1000.0).abs() < 1.0, "{:?}", pace.rate());
+        // Nineteen long steps of ten intervals each, and one of 10 ms into the even part.
+        assert_eq!(pace.missing(), Some(20 * 9));
+    }
+
+    #[test]
+    fn only_what_may_jump_and_is_long_does() {
+        for (jump, may, jumps) in [
+            (5_000 * MS, true, 1),
+            (5_000 * MS, false, 0),
+            (900 * MS, true, 0),
+            (3_600_000 * MS, true, 1),
+        ] {
+            for at in [3, 500] {
+                let mut pace = Pace::new();
+                (0..1000).for_each(|k| pace.take(if k == at { jump } else { MS }, may));
+                let settled = pace.settled();
+                assert_eq!(settled.jumps().0, jumps, "{jump} {may} at {at}");
+                let missing = if jumps == 1 { 0 } else { (jump / MS - 1) as u64 };
+                assert!(is(&settled, 1000.0, missing), "{:?} {:?}", settled.rate(), settled.missing());
+            }
+        }
+        // A stream of one sample in two seconds has no jumps.
+        let mut pace = Pace::new();
+        (0..20).for_each(|_| pace.take(2000 * MS, true));
+        assert_eq!((pace.settled().jumps().0, pace.settled().missing()), (0, Some(0)));
+    }
+
+    proptest! {
+        #[test]
+        fn jitter_of_a_third_of_the_interval_hides_nothing_and_what_is_lost_is_found(
+            jitter in prop::collection::vec(-330_000i64..330_000, 400),
+            lost in prop::collection::btree_set(1usize..399, 0..20),
+        ) {
+            let times = jitter.iter().enumerate().filter(|(k, _)| !lost.contains(k));
+            let pace = pace(times.map(|(k, late)| k as i64 * MS + late));
+            prop_assert!(pace.missing().unwrap().abs_diff(lost.len() as u64) <= 1, "{:?}", pace.missing());
+            prop_assert!((pace.rate().unwrap() / 1000.0 - 1.0).abs() < 6e-3, "{:?}", pace.rate());
+        }
+    }
+}
