@@ -179,7 +179,8 @@ fn steps(report: &HeardReport) -> String {
         let told = [("did not go on", sensor.steps_back), ("jumped ahead", sensor.steps_forward)];
         let told = told.into_iter().filter(|(_, count)| *count > 0);
         let told: Vec<_> = told.map(|(what, count)| format!("{what} {}", times(count))).collect();
-        let longest = sensor.longest_step_s.map_or(String::new(), |s| format!(", by {} s at most", number(s.abs())));
+        let longest =
+            sensor.longest_step_s.map_or(String::new(), |s| format!(", by {} s at most", number(s.abs())));
         text += &format!("{}: its time {}{longest}: left out\n", sensor.name, told.join(" and "));
     }
     let assumed = report.duration_s.is_none() && report.links.iter().all(|link| link.lost_seq.is_none());
@@ -223,7 +224,8 @@ fn heard_sensors(report: &HeardReport) -> String {
             );
             row.push(optional(sensor.jitter_us.map(|us| us.p99)));
         }
-        let share = |share: Option<f64>| share.map_or("-".into(), |share| format!("{} %", number(100.0 * share)));
+        let share =
+            |share: Option<f64>| share.map_or("-".into(), |share| format!("{} %", number(100.0 * share)));
         row.extend(gathered.then(|| share(sensor.burst_share)));
         row
     });

@@ -96,7 +96,10 @@ impl Meter {
     /// From the first to the last read or stamp, steps of the stamps left out, s; `None` for a recording without stamps.
     pub fn duration_s(&self) -> Option<f64> {
         let stamped = self.counts().stamps.map(|stamps| stamps.span_ns);
-        Some(stamped.or(self.last.zip(self.first).map(|(last, first)| last.saturating_sub(first)))? as f64 * 1e-9)
+        Some(
+            stamped.or(self.last.zip(self.first).map(|(last, first)| last.saturating_sub(first)))? as f64
+                * 1e-9,
+        )
     }
 
     /// The protocol that bytes read as which make no packet of the one asked for.

@@ -4,7 +4,10 @@
 use crate::report::Times;
 
 /// Steps looked at before the first interval is told.
-const EARLY: usize = 16;
+const EARLY: usize = 64;
+
+/// How often those are placed anew at most, each time by the interval that they had.
+const ROUNDS: usize = 8;
 
 /// How much of a sample's distance from its place the next place keeps. With less, a late sample and the early one
 /// behind it look like a gap; with all of it, the places would not follow a clock that drifts.
@@ -16,16 +19,26 @@ const SHORTEST_JUMP: i64 = 1_000_000_000;
 /// … and longer than so many intervals.
 const JUMP: f64 = 100.0;
 
+/// What is known of a step besides how long it is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Evidence {
+    /// Nothing says that as much time went by, so a long step is one of the clock.
+    pub may_jump: bool,
+    /// The numbers say that no packet of the sender is missing in it.
+    pub lossless: bool,
+}
+
 /// Steps from one sample time to the next, all forward.
 ///
 /// Each sample has its place on a grid that follows the stream: the number of intervals to it is that of places passed.
-/// Their sum is what the interval is found from, `span / places`, so a gap changes nothing. A jump of the clock is left
-/// out.
+/// Their sum is what the interval is found from, `span / places`, so a gap changes nothing. Two places passed at once
+/// where nothing was lost are one: a sensor that is told at the ticks of a faster one, or in whole ms, now and then has
+/// no sample at a tick. A jump of the clock is left out.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     steps: Times,
-    /// The first ones, until the interval is known, and whether each may be a jump.
-    early: Vec<(i64, bool)>,
+    /// The first ones, until the interval is known.
+    early: Vec<(i64, Evidence)>,
     /// ns; 0 until it is known.
     interval: f64,
     /// All placed steps together, ns, and the places that they passed.
@@ -51,17 +64,17 @@ impl Pace {
         }
     }
 
-    /// Takes in a step of more than nothing, ns. `may_jump`: nothing says that as much time went by, so a long step is
-    /// one of the clock.
-    pub fn take(&mut self, step: i64, may_jump: bool) {
+    /// Takes in a step of more than nothing, ns.
+    pub fn take(&mut self, step: i64, evidence: Evidence) {
         if self.interval > 0.0 {
-            self.place(step, may_jump);
+            self.place(step, evidence);
+            self.measure();
             if self.steps.count().is_power_of_two() {
                 self.doubt();
             }
             return;
         }
-        self.early.push((step, may_jump));
+        self.early.push((step, evidence));
         if self.early.len() == EARLY {
             self.settle();
         }
@@ -109,11 +122,27 @@ impl Pace {
         let mut steps = Times::new();
         early.iter().for_each(|(step, _)| steps.record(*step));
         self.interval = fitted(&steps);
-        early.into_iter().for_each(|(step, may_jump)| self.place(step, may_jump));
+        for _ in 0..ROUNDS {
+            let mut round = Pace { interval: self.interval, ..Pace::new() };
+            early.iter().for_each(|(step, evidence)| round.place(*step, *evidence));
+            round.measure();
+            let same = round.interval == self.interval;
+            *self = round;
+            if same {
+                break;
+            }
+        }
     }
 
-    fn place(&mut self, step: i64, may_jump: bool) {
-        if may_jump && self.is_long(step) {
+    /// Takes the interval from all that was placed.
+    fn measure(&mut self) {
+        if self.places > 0 {
+            self.interval = self.span as f64 / self.places as f64;
+        }
+    }
+
+    fn place(&mut self, step: i64, evidence: Evidence) {
+        if evidence.may_jump && self.is_long(step) {
             self.jumps += 1;
             self.longest_jump = self.longest_jump.max(step);
             self.late = 0.0;
@@ -121,13 +150,13 @@ impl Pace {
         }
         self.steps.record(step);
         let passed = step as f64 / self.interval + self.late;
-        let places = passed.round().max(0.0);
+        let mut places = passed.round().max(0.0);
         self.late = KEPT * (passed - places);
+        if evidence.lossless && places == 2.0 {
+            (places, self.late) = (1.0, 0.0);
+        }
         self.span = self.span.saturating_add(step);
         self.places += places as u64;
-        if self.places > 0 {
-            self.interval = self.span as f64 / self.places as f64;
-        }
     }
 
     /// Begins anew from all steps where the first ones were not like the others.
@@ -163,7 +192,7 @@ fn fitted(steps: &Times) -> f64 {
         });
         span / places
     };
-    let near = |step: f64| (0.5 * median..1.9 * median).contains(&step);
+    let near = |step: f64| (0.25 * median..1.9 * median).contains(&step);
     let mut interval = mean(&mut values(steps).filter(|(step, _)| near(*step)).map(|(s, n)| (s, n, 1.0)));
     for _ in 0..8 {
         let short = values(steps).filter(|(step, _)| *step < JUMP * interval);
@@ -187,7 +216,10 @@ mod tests {
     fn pace(times: impl IntoIterator<Item = i64>) -> Pace {
         let times: Vec<i64> = times.into_iter().collect();
         let mut pace = Pace::new();
-        times.windows(2).filter(|pair| pair[1] > pair[0]).for_each(|pair| pace.take(pair[1] - pair[0], false));
+        times
+            .windows(2)
+            .filter(|pair| pair[1] > pair[0])
+            .for_each(|pair| pace.take(pair[1] - pair[0], Evidence::default()));
         pace.settled()
     }
 
@@ -236,23 +268,54 @@ mod tests {
 
     #[test]
     fn first_steps_that_are_not_like_the_others_do_not_stay() {
-        let pace = pace((0..20).map(|k| k * 10 * MS).chain((0..50_000).map(|k| 200 * MS + k * MS)));
+        let pace = pace((0..200).map(|k| k * 10 * MS).chain((0..50_000).map(|k| 2000 * MS + k * MS)));
         assert!((pace.rate().unwrap() - 1000.0).abs() < 1.0, "{:?}", pace.rate());
-        // Nineteen long steps of ten intervals each, and one of 10 ms into the even part.
-        assert_eq!(pace.missing(), Some(20 * 9));
+        // Two hundred steps of ten intervals each, the one into the even part among them.
+        assert_eq!(pace.missing(), Some(200 * 9));
+    }
+
+    #[test]
+    fn a_tick_without_a_sample_is_no_gap_where_the_numbers_have_none() {
+        // 999.8 Hz and 800 Hz, told at the ticks of 1 kHz.
+        for (hz, missing_without) in [(999.8, 20), (800.0, 25_000)] {
+            let times: Vec<i64> =
+                (0..).map(|k| (f64::from(k) * 1000.0 / hz).ceil() as i64 * MS).take(100_000).collect();
+            for lossless in [true, false] {
+                let mut pace = Pace::new();
+                times
+                    .windows(2)
+                    .for_each(|pair| pace.take(pair[1] - pair[0], Evidence { may_jump: false, lossless }));
+                let pace = pace.settled();
+                let (rate, missing) = if lossless { (hz, 0) } else { (1000.0, missing_without) };
+                assert!(
+                    (pace.rate().unwrap() / rate - 1.0).abs() < 1e-4,
+                    "{hz} {lossless}: {:?}",
+                    pace.rate()
+                );
+                assert!(
+                    pace.missing().unwrap().abs_diff(missing) <= 1,
+                    "{hz} {lossless}: {:?}",
+                    pace.missing()
+                );
+            }
+        }
+        // A longer gap is one all the same: the sender took no samples.
+        let mut pace = Pace::new();
+        (0..1000).for_each(|k| {
+            pace.take(if k == 500 { 7 * MS } else { MS }, Evidence { may_jump: false, lossless: true })
+        });
+        assert_eq!(pace.settled().missing(), Some(6));
     }
 
     #[test]
     fn only_what_may_jump_and_is_long_does() {
-        for (jump, may, jumps) in [
-            (5_000 * MS, true, 1),
-            (5_000 * MS, false, 0),
-            (900 * MS, true, 0),
-            (3_600_000 * MS, true, 1),
-        ] {
+        for (jump, may, jumps) in
+            [(5_000 * MS, true, 1), (5_000 * MS, false, 0), (900 * MS, true, 0), (3_600_000 * MS, true, 1)]
+        {
             for at in [3, 500] {
                 let mut pace = Pace::new();
-                (0..1000).for_each(|k| pace.take(if k == at { jump } else { MS }, may));
+                let evidence = Evidence { may_jump: may, lossless: false };
+                (0..1000).for_each(|k| pace.take(if k == at { jump } else { MS }, evidence));
                 let settled = pace.settled();
                 assert_eq!(settled.jumps().0, jumps, "{jump} {may} at {at}");
                 let missing = if jumps == 1 { 0 } else { (jump / MS - 1) as u64 };
@@ -261,7 +324,7 @@ mod tests {
         }
         // A stream of one sample in two seconds has no jumps.
         let mut pace = Pace::new();
-        (0..20).for_each(|_| pace.take(2000 * MS, true));
+        (0..20).for_each(|_| pace.take(2000 * MS, Evidence { may_jump: true, lossless: false }));
         assert_eq!((pace.settled().jumps().0, pace.settled().missing()), (0, Some(0)));
     }
 

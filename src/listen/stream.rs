@@ -1,6 +1,6 @@
 //! One sensor of a stream: how many, how evenly, by the sender's times and by ours. Memory is fixed.
 
-use super::pace::Pace;
+use super::pace::{Evidence, Pace};
 use crate::report::{HeardSensor, Times};
 use crate::sensor::SensorKind;
 use crate::wire::samples::{Sample, Source};
@@ -107,15 +107,18 @@ impl Stream {
     /// Takes a sample in.
     pub(super) fn take(&mut self, sample: &Sample, arrival: Arrival) {
         self.count += 1;
-        let waited = arrival.at.and_then(|at| self.arrived.replace(at).map(|before| at.saturating_sub(before)));
-        let lossless = sample.packet.lost.map(|lost| self.lost.replace(lost).is_some_and(|before| lost <= before));
+        let waited =
+            arrival.at.and_then(|at| self.arrived.replace(at).map(|before| at.saturating_sub(before)));
+        let lossless =
+            sample.packet.lost.map(|lost| self.lost.replace(lost).is_some_and(|before| lost <= before));
         let step = sample.t.and_then(|t| self.step(t.0));
         let step = step.and_then(|step| self.go_on(step, waited, lossless));
         if arrival.at.is_some() && !arrival.stamped {
             *self.together.get_or_insert(0) += u64::from(waited.is_some() && arrival.read == self.read);
         }
         self.read = arrival.read;
-        let Some(waited) = waited.filter(|waited| !arrival.stamped || self.is_plausible(*waited, step)) else {
+        let Some(waited) = waited.filter(|waited| !arrival.stamped || self.is_plausible(*waited, step))
+        else {
             return;
         };
         self.interval.record(waited);
@@ -132,8 +135,9 @@ impl Stream {
         if let Some(before) = self.sampled {
             let step = t.saturating_sub(before);
             let wrapped = |wrap: &i64| said <= AROUND && (1..=AROUND).contains(&step.saturating_add(*wrap));
-            let from_before =
-                |wrap: &i64| self.wrapped >= *wrap && (-AROUND..=AROUND).contains(&step.saturating_sub(*wrap));
+            let from_before = |wrap: &i64| {
+                self.wrapped >= *wrap && (-AROUND..=AROUND).contains(&step.saturating_sub(*wrap))
+            };
             if let Some(wrap) = WRAPS.into_iter().find(wrapped) {
                 self.wrapped += wrap;
                 t += wrap;
@@ -160,7 +164,8 @@ impl Stream {
         let may_lose = lossless == Some(false) && step <= LONGEST_LOSS;
         let went_by = waited.is_some_and(|waited| waited >= step / 2);
         let may_jump = !may_lose && !went_by;
-        self.pace.take(skipped.unwrap_or(step), may_jump);
+        let evidence = Evidence { may_jump, lossless: lossless == Some(true) };
+        self.pace.take(skipped.unwrap_or(step), evidence);
         let follows = skipped.is_none() && !(may_jump && self.pace.is_long(step));
         follows.then_some(step)
     }

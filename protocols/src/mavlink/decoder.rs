@@ -382,7 +382,10 @@ mod tests {
         packet[4] ^= 0x40;
         assert_eq!(read(&packet)[0], Some(Err(Error::Checksum)), "in its number");
         let unknown = read(&UNKNOWN)[0].unwrap().unwrap();
-        assert!(!unknown.checked && unknown.message.is_none(), "control: beyond the table nothing is checked");
+        assert!(
+            !unknown.checked && unknown.message.is_none(),
+            "control: beyond the table nothing is checked"
+        );
     }
 
     #[test]

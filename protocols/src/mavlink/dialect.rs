@@ -2,7 +2,7 @@
 //! enough to check a packet that is not read here, and to call it by its name.
 //!
 //! Identifiers, checksum bytes and names are those of the dialects' definitions (<https://mavlink.io/en/messages/>); a
-//! test of `listen` compares the table with what another implementation generates from them.
+//! test of recordings compares the table with what another implementation generates from them.
 
 /// What is known of a message without reading it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -351,7 +351,9 @@ mod tests {
         assert!(KNOWN.is_sorted_by(|a, b| a.id < b.id));
         assert!(KNOWN.iter().all(|entry| known(entry.id) == Some(entry)));
         let gaps = KNOWN.windows(2).map(|pair| pair[0].id + 1..pair[1].id);
-        assert!(gaps.flatten().chain([KNOWN[KNOWN.len() - 1].id + 1, u32::MAX]).all(|id| known(id).is_none()));
+        assert!(
+            gaps.flatten().chain([KNOWN[KNOWN.len() - 1].id + 1, u32::MAX]).all(|id| known(id).is_none())
+        );
     }
 
     #[test]

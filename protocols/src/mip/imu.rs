@@ -85,7 +85,8 @@ impl Time {
 
     fn emit(&self, out: &mut [u8]) {
         bytes::put_be(out, field::LEN..field::LEN + 1, self.len() as u8);
-        let mut kind = |descriptor: u8| bytes::put_be(out, field::DESCRIPTOR..field::DESCRIPTOR + 1, descriptor);
+        let mut kind =
+            |descriptor: u8| bytes::put_be(out, field::DESCRIPTOR..field::DESCRIPTOR + 1, descriptor);
         match *self {
             Self::Reference(ns) => {
                 kind(descriptor::REFERENCE);

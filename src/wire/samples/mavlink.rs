@@ -159,8 +159,12 @@ impl Sender {
         if gap < Sender::LONGEST_GAP
             && let Some(last) = self.last()
         {
-            let mut between: Vec<u8> =
-                self.unchecked.iter().map(|other| other.wrapping_sub(last)).filter(|k| (1..=gap).contains(k)).collect();
+            let mut between: Vec<u8> = self
+                .unchecked
+                .iter()
+                .map(|other| other.wrapping_sub(last))
+                .filter(|k| (1..=gap).contains(k))
+                .collect();
             between.sort_unstable();
             between.dedup();
             between.into_iter().for_each(|k| counts.number(&mut self.losses, last.wrapping_add(k)));

@@ -39,7 +39,9 @@ fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut impl 
         };
         return counts.foreign(&format!("{way} {command}"));
     };
-    let mut sample = |kind, value| each(Sample { kind, source: Source::only("msp"), t: None, value, packet: Carrier::default() });
+    let mut sample = |kind, value| {
+        each(Sample { kind, source: Source::only("msp"), t: None, value, packet: Carrier::default() })
+    };
     sample(SensorKind::Gyro, Some(body(seen.gyro, 1f64.to_radians() / GYRO_SCALE)));
     sample(SensorKind::Accel, Some(body(seen.accel, STANDARD_GRAVITY / ACCEL_SCALE)));
     // A field of exactly nothing is a magnetometer that is not there.
