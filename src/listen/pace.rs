@@ -2,6 +2,7 @@
 //! Memory is fixed.
 
 use crate::report::Times;
+use std::f64::consts::TAU;
 
 /// Steps looked at before the first interval is told.
 const EARLY: usize = 64;
@@ -11,13 +12,16 @@ const ROUNDS: usize = 8;
 
 /// How much of a sample's distance from its place the next place keeps. With less, a late sample and the early one
 /// behind it look like a gap; with all of it, the places would not follow a clock that drifts.
-const KEPT: f64 = 0.75;
+const KEPT: f64 = 0.9;
 
 /// A step of the clock is longer than this, ns, …
 const SHORTEST_JUMP: i64 = 1_000_000_000;
 
 /// … and longer than so many intervals.
 const JUMP: f64 = 100.0;
+
+/// Longer steps, in intervals, do not go into what the interval is: a place more or less would change it.
+const SHORT: f64 = 16.0;
 
 /// What is known of a step besides how long it is.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,9 +45,10 @@ pub(super) struct Pace {
     early: Vec<(i64, Evidence)>,
     /// ns; 0 until it is known.
     interval: f64,
-    /// All placed steps together, ns, and the places that they passed.
-    span: i64,
+    /// The places that all steps passed.
     places: u64,
+    /// Of the short ones, how long they took together, ns, and the places.
+    short: (i64, u64),
     /// How far the newest sample is behind its place, in intervals.
     late: f64,
     jumps: u64,
@@ -56,8 +61,8 @@ impl Pace {
             steps: Times::new(),
             early: Vec::with_capacity(EARLY),
             interval: 0.0,
-            span: 0,
             places: 0,
+            short: (0, 0),
             late: 0.0,
             jumps: 0,
             longest_jump: 0,
@@ -90,7 +95,8 @@ impl Pace {
 
     /// The places passed a second, Hz.
     pub fn rate(&self) -> Option<f64> {
-        (self.places > 0).then(|| self.places as f64 * 1e9 / self.span as f64)
+        let (span, places) = self.short;
+        (places > 0).then(|| places as f64 * 1e9 / span as f64)
     }
 
     /// Places passed where no sample was; `None` without a step.
@@ -123,7 +129,8 @@ impl Pace {
         early.iter().for_each(|(step, _)| steps.record(*step));
         self.interval = fitted(&steps);
         for _ in 0..ROUNDS {
-            let mut round = Pace { interval: self.interval, ..Pace::new() };
+            let late = KEPT * lateness(&early, self.interval);
+            let mut round = Pace { interval: self.interval, late, ..Pace::new() };
             early.iter().for_each(|(step, evidence)| round.place(*step, *evidence));
             round.measure();
             let same = round.interval == self.interval;
@@ -136,8 +143,9 @@ impl Pace {
 
     /// Takes the interval from all that was placed.
     fn measure(&mut self) {
-        if self.places > 0 {
-            self.interval = self.span as f64 / self.places as f64;
+        let (span, places) = self.short;
+        if places > 0 {
+            self.interval = span as f64 / places as f64;
         }
     }
 
@@ -155,8 +163,10 @@ impl Pace {
         if evidence.lossless && places == 2.0 {
             (places, self.late) = (1.0, 0.0);
         }
-        self.span = self.span.saturating_add(step);
         self.places += places as u64;
+        if places < SHORT {
+            self.short = (self.short.0.saturating_add(step), self.short.1 + places as u64);
+        }
     }
 
     /// Begins anew from all steps where the first ones were not like the others.
@@ -166,9 +176,12 @@ impl Pace {
         }
         let fitted = fitted(&self.steps);
         if !(0.7..1.4).contains(&(fitted / self.interval)) {
-            let places: f64 = values(&self.steps).map(|(step, count)| places(step, fitted) * count).sum();
-            (self.places, self.late) = (places as u64, 0.0);
-            self.interval = self.span as f64 / places;
+            let passed = |(step, count): (f64, f64)| [step * count, places(step, fitted) * count];
+            let all =
+                values(&self.steps).map(passed).fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+            (self.places, self.late) = (all[1] as u64, 0.0);
+            self.short = (all[0] as i64, all[1] as u64);
+            self.measure();
         }
     }
 }
@@ -180,6 +193,19 @@ fn values(steps: &Times) -> impl Iterator<Item = (f64, f64)> {
 
 fn places(step: f64, interval: f64) -> f64 {
     (step / interval).round().max(1.0)
+}
+
+/// How far the sample before these steps is behind its place, if the places are where the samples are on average, in
+/// intervals.
+fn lateness(early: &[(i64, Evidence)], interval: f64) -> f64 {
+    let (mut at, mut sin, mut cos) = (0.0, 0.0, 1.0);
+    for step in early.iter().map(|(step, _)| *step as f64).filter(|step| *step < JUMP * interval) {
+        at += step / interval;
+        let angle = TAU * (at - at.round());
+        sin += libm::sin(angle);
+        cos += libm::cos(angle);
+    }
+    -libm::atan2(sin, cos) / TAU
 }
 
 /// The interval of which most steps are one and the others a whole number, ns. It begins with the mean of those near
