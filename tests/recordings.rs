@@ -100,7 +100,7 @@ fn a_ground_stations_log_is_heard_by_its_stamps() {
     assert!((report["duration_s"].as_f64().unwrap() - 1.99304).abs() < 1e-9, "{report}");
 
     // Joined in the middle of a packet and cut in one, stamps that go back by a year and on again, two packets hurt: a
-    // packet that cannot be checked is not believed behind damage, so each hides the one behind it too.
+    // packet that cannot be checked is not believed behind damage, so each hides the one behind it too, and so does where the log was joined.
     let mut hurt = records.clone();
     hurt[100][30] ^= 0x10;
     hurt[142][33] ^= 0x10;
@@ -110,7 +110,7 @@ fn a_ground_stations_log_is_heard_by_its_stamps() {
     }
     let bytes = hurt.concat();
     let (code, report, text) = listen("mavlink", &bytes[13..bytes.len() - 5]);
-    assert_eq!((code, counts(&report)), (1, [394, 4, 4]), "{text}");
+    assert_eq!((code, counts(&report)), (1, [393, 4, 4]), "{text}");
     assert_eq!(
         (&report["links"][0]["joined_midway"], &report["links"][0]["stamp_steps"]),
         (&1.into(), &2.into())
@@ -219,7 +219,9 @@ fn played(protocol: &str, scene: &str) -> Value {
     let to = format!("{protocol}@file:{}", path.display());
     let mut command = Command::new(env!("CARGO_BIN_EXE_ratetable"));
     let output = command.arg("run").arg(&scene_path).args(["--to", &to, "--speed", "max"]).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    // 1 where a sample was replaced before it was told.
+    let code = output.status.code();
+    assert!(code == Some(0) || code == Some(1), "{}", String::from_utf8_lossy(&output.stderr));
     listen_to(protocol, &path).1
 }
 

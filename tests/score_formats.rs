@@ -23,7 +23,7 @@ fn flight(home: &Path, formats: &str, accel: &str, axes: &str) -> PathBuf {
     fs::write(
         &scene,
         format!(
-            "axes = \"{axes}\"\nduration = \"3 s\"\n[[motion]]\nkind = \"cone\"\nhalf_angle = \"20 deg\"\nrate = \"40 deg/s\"\nduration = \"3 s\"\n\
+            "axes = \"{axes}\"\nduration = \"3 s\"\n[[motion]]\nkind = \"cone\"\nhalf_angle = \"20 deg\"\nfrequency = \"0.3 Hz\"\nduration = \"3 s\"\n\
              [gyro]\nrate = \"400 Hz\"\nnoise_std = \"0.1 deg/s\"\n[accel]\nrate = \"{accel}\"\nnoise_std = \"5 mg\"\n\
              [mag]\nrate = \"100 Hz\"\nnoise_std = \"0.2 uT\"\n"
         ),
