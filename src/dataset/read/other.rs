@@ -21,6 +21,9 @@ pub(super) struct Rows {
     pub columns: Vec<Vec<f64>>,
 }
 
+/// Time and value of each reading.
+type Readings = Vec<(SimTime, Vector<Body>)>;
+
 /// Which table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum What {
@@ -88,10 +91,7 @@ pub(super) fn truth(folder: &Path) -> Result<Option<Recorded>, DatasetError> {
 }
 
 /// One sensor's readings of a dataset without its CSV; `None` if no other format has them either.
-pub(super) fn readings(
-    folder: &Path,
-    kind: SensorKind,
-) -> Result<Option<Vec<(SimTime, Vector<Body>)>>, DatasetError> {
+pub(super) fn readings(folder: &Path, kind: SensorKind) -> Result<Option<Readings>, DatasetError> {
     let Some((file, rows)) = rows(folder, What::Sensor(kind))? else { return Ok(None) };
     let axes = axes(&file)?;
     let value = |i: usize| DVec3::from_array([0, 1, 2].map(|axis| rows.columns[axis][i]));
