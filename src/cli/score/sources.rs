@@ -116,15 +116,11 @@ impl Truth {
         let folder = self.folder.as_deref();
         hints::Known {
             declination_deg: folder.and_then(|folder| declination(folder).ok()).map(f64::to_degrees),
-            without_mag: without_mag || folder.is_some_and(|folder| !has(folder, SensorKind::Mag)),
+            without_mag: without_mag || folder.is_some_and(|folder| !stored::has(folder, SensorKind::Mag)),
         }
     }
 }
 
-/// Whether a dataset has readings of a sensor.
-fn has(folder: &Path, kind: SensorKind) -> bool {
-    folder.join(format!("{kind}.csv")).exists()
-}
 
 /// What filters run on: the dataset's readings and its declination.
 type Data = (Readings, f64);
@@ -162,7 +158,7 @@ fn run(truth: &Truth, name: &str, data: &mut Option<Data>) -> Result<Source, Ref
 }
 
 fn of_dataset(folder: &Path) -> Result<Readings, Refusal> {
-    let of = |kind: SensorKind| match has(folder, kind) {
+    let of = |kind: SensorKind| match stored::has(folder, kind) {
         true => readings(folder, kind),
         false => Ok(Vec::new()),
     };
