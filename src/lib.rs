@@ -25,6 +25,7 @@ pub mod earth;
 pub mod effects;
 pub mod filters;
 pub mod geometry;
+pub mod interrupt;
 pub mod keys;
 pub mod link;
 pub mod listen;

@@ -5,14 +5,17 @@ mod sources;
 mod text;
 
 use super::options::{self, Alignment};
-use super::{Refusal, Verdict, say};
-use crate::dataset;
+use super::{Refusal, Verdict, say, tell};
+use crate::dataset::{self, Holds};
 use crate::geometry::Axes;
 use crate::report::{Limit, LimitError, ScoreReport, Scored};
 use crate::score::{self, Clock, DelayKnown, Figures, Judged, Recorded, Track};
 use crate::time::SimTime;
 use serde_json::Value;
 use std::path::PathBuf;
+
+/// The files of the output folder.
+const FILES: [&str; 4] = ["report.json", "errors.csv", "attitude.svg", "error.svg"];
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -59,7 +62,7 @@ struct Source {
 
 pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(dir) = &arguments.out {
-        dataset::may_write(dir, arguments.force)?;
+        dataset::may_write(dir, arguments.force, Holds::Score, &FILES.map(String::from))?;
     }
     let truth = sources::truth(&arguments.truth, arguments.axes)?;
     let sources = sources::estimates(&truth, &arguments.estimate, arguments.axes)?;
@@ -83,20 +86,21 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
         judged.push(one);
     }
     let report = report(arguments, scored)?;
-    eprint!("{}", text::report(&report));
+    tell(&text::report(&report));
     if let Some(dir) = &arguments.out {
         let json = serde_json::to_string_pretty(&report)? + "\n";
+        let [report_json, errors, attitude, error] = FILES;
         let files = [
-            ("report.json", json.into_bytes()),
-            ("errors.csv", charts::errors_csv(&report, &judged).into_bytes()),
-            ("attitude.svg", charts::attitude(&report, &judged, &truth).into_bytes()),
-            ("error.svg", charts::error(&report, &judged).into_bytes()),
+            (report_json, json.into_bytes()),
+            (errors, charts::errors_csv(&report, &judged).into_bytes()),
+            (attitude, charts::attitude(&report, &judged, &truth).into_bytes()),
+            (error, charts::error(&report, &judged).into_bytes()),
         ];
-        dataset::put_all(dir, arguments.force, &files)?;
-        eprintln!("{}: written", dir.display());
+        dataset::put_all(dir, arguments.force, Holds::Score, &files)?;
+        tell(&format!("{}: written", dir.display()));
     }
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+        say(&(serde_json::to_string_pretty(&report)? + "\n"))?;
     }
     Ok(if report.ok { Verdict::Fine } else { Verdict::Failed })
 }

@@ -318,13 +318,13 @@ fn a_folder_that_holds_something_is_refused_and_force_replaces_its_dataset_alone
     let (_home, out) = place();
     let (long, short) = (parsed(SEVERAL), parsed("duration = \"10 ms\"\n[mag]\nrate = \"1 kHz\"\n"));
     fs::create_dir(&out).unwrap();
-    may_write(&out, false).unwrap();
+    may_write(&out, false, Holds::Dataset, &[]).unwrap();
     let extra = [("gyro.svg".to_string(), b"<svg/>".to_vec())];
     write(&long, long.duration, &out, Options { extra: &extra, ..Options::new(&mut |_| {}) }).unwrap();
     assert_eq!(fs::read(out.join("gyro.svg")).unwrap(), b"<svg/>");
     let before = contents(&out);
     let refusal = write_to(&short, short.duration, &out, false).unwrap_err().to_string();
-    assert_eq!(may_write(&out, false).unwrap_err().to_string(), refusal);
+    assert_eq!(may_write(&out, false, Holds::Dataset, &[]).unwrap_err().to_string(), refusal);
     assert!(refusal.contains("already holds files") && refusal.contains("--force"), "{refusal}");
     assert!(contents(&out) == before);
 
