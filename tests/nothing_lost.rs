@@ -94,7 +94,7 @@ impl Running {
             std::thread::sleep(Duration::from_millis(5));
         }
         self.said.read_to_string(&mut self.before).unwrap();
-        (self.child.wait().unwrap(), self.before)
+        (self.child.wait().unwrap(), std::mem::take(&mut self.before))
     }
 }
 
