@@ -239,7 +239,7 @@ fn a_disk_that_fills_up_is_said_and_leaves_no_half_of_a_dataset() {
 #[test]
 fn an_output_is_neither_another_nor_what_the_scene_is_read_from_nor_in_the_output_folder() {
     let home = Home::new();
-    home.put("log.csv", "t_s,wx_deg_s,wy_deg_s,wz_deg_s\n0,1,2,3\n1,1,2,3\n2,1,2,3\n");
+    home.put("log.csv", "t_s,wx_rad_s,wy_rad_s,wz_rad_s\n0,0.1,0.2,0.3\n1,0.1,0.2,0.3\n2,0.1,0.2,0.3\n");
     home.put(
         "imu.yaml",
         "update_rate: 100\ngyroscope_noise_density: 1e-3\ngyroscope_random_walk: 1e-5\naccelerometer_noise_density: 1e-2\naccelerometer_random_walk: 1e-4\n",
