@@ -17,6 +17,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// `eprintln!` panics where standard error is closed or full: `cli::tell` does not.
+#![warn(clippy::print_stderr)]
+
 pub mod cli;
 pub mod clock;
 pub mod dataset;
