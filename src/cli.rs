@@ -2,6 +2,7 @@
 
 mod budget;
 mod check;
+mod clash;
 mod demo;
 mod generate;
 mod list;
@@ -15,6 +16,7 @@ mod summary;
 mod timing;
 
 use clap::{Parser, Subcommand};
+use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
 /// A rate table in software: plays a scene and writes its gyro, accelerometer and magnetometer readings, on time, to
@@ -78,7 +80,11 @@ impl<E: std::error::Error> From<E> for Refusal {
 
 /// Runs the program: exit code 0 = done and within limits, 1 = a limit failed or samples were lost, 2 = could not run.
 pub fn main() -> ExitCode {
-    let verdict = match Arguments::parse().command {
+    let command = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command,
+        Err(error) => return ExitCode::from(explained(&error)),
+    };
+    let verdict = match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Timing(arguments) => timing::timing(&arguments),
         Command::Generate(arguments) => generate::generate(&arguments),
@@ -93,15 +99,48 @@ pub fn main() -> ExitCode {
         Ok(Verdict::Failed) => ExitCode::from(1),
         Ok(Verdict::Code(code)) => ExitCode::from(code),
         Err(Refusal(message)) => {
-            eprintln!("{message}");
+            tell(&message);
             ExitCode::from(2)
         }
     }
 }
 
-/// Writes to standard output; a reader that has left is no failure of ours.
-fn say(text: &str) {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+/// Shows help that was asked for, or what is wrong with the arguments: the exit code.
+fn explained(error: &clap::Error) -> u8 {
+    let shown = error.print();
+    if error.use_stderr() {
+        return 2;
+    }
+    match written(shown) {
+        Ok(()) => 0,
+        Err(Refusal(message)) => {
+            tell(&message);
+            2
+        }
+    }
+}
+
+/// Writes a result to standard output.
+///
+/// # Errors
+/// It was not taken, as of a full disk: whoever asked for the result does not have it. A reader that has left, as
+/// `head` does, wants no more of it, which is no failure.
+fn say(text: &str) -> Result<(), Refusal> {
+    let mut out = io::stdout().lock();
+    written(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+fn written(result: io::Result<()>) -> Result<(), Refusal> {
+    match result {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Refusal(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a line for a person to standard error. Where that is closed or full nobody is left to be told so: the exit
+/// code says what came of the command.
+fn tell(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{}", line.strip_suffix('\n').unwrap_or(line));
 }

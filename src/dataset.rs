@@ -16,6 +16,7 @@
 //! [`Format`]: to add one, write one file beside this one and one line in [`FORMATS`]. Of many runs of one scene each
 //! has such a folder: [`write_runs`].
 
+mod bounds;
 mod csv;
 mod error;
 mod figures;
@@ -36,13 +37,14 @@ mod runs;
 mod table;
 mod tum;
 
+pub use bounds::Bounds;
 pub use error::DatasetError;
-pub use figures::{Figure, Series, figures};
-pub use folder::{Folder, Sink};
+pub use figures::{Figure, Figures, Series};
+pub use folder::{Folder, Holds, Sink};
 pub use format::{FEATURES, FORMATS, Format, Open, Writer, Written};
 pub use manifest::FileEntry;
 pub use reference::{Errors, Quality};
-pub use runs::{Extra, Made, Run, RunOptions, Shard, write_runs};
+pub use runs::{Made, Run, RunOptions, Shard, write_runs};
 pub use table::{Column, Table};
 
 use crate::geometry::Attitude;
@@ -51,6 +53,9 @@ use crate::scene::{Attached, Plan};
 use crate::time::SimTime;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Makes files of figures: a plain name and the contents of each.
+pub type Draw<'a> = &'a (dyn Fn(&Plan, &[Figure]) -> Vec<(String, Vec<u8>)> + Sync);
 
 /// How a dataset is written.
 pub struct Options<'a> {
@@ -64,6 +69,8 @@ pub struct Options<'a> {
     pub link_faults: &'a [String],
     /// Further files that the caller made, such as figures: a plain name and the contents.
     pub extra: &'a [(String, Vec<u8>)],
+    /// Makes further files of the figures of what is played; none = no figures are gathered.
+    pub draw: Option<Draw<'a>>,
     /// Called now and then with the scene time that has been written.
     pub progress: &'a mut dyn FnMut(SimTime),
     /// Once true, writing stops with [`DatasetError::Stopped`] and leaves nothing behind.
@@ -81,6 +88,7 @@ impl<'a> Options<'a> {
             estimates: &[],
             link_faults: &[],
             extra: &[],
+            draw: None,
             progress,
             stop: None,
             run: None,
@@ -101,22 +109,46 @@ pub struct Summary {
     pub clipped: Vec<u64>,
 }
 
-/// Whether [`write()`] would accept the folder, asked before a run that takes its time. Nothing is changed.
+/// Whether a folder that holds this may be written, asked before work that takes its time: `names` are the files that
+/// there may be. Nothing is changed.
 ///
 /// # Errors
-/// It holds something and `force` is off, or it is no folder.
-pub fn may_write(dir: &Path, force: bool) -> Result<(), DatasetError> {
-    folder::may_write(dir, force).map(|_| ())
+/// It holds something and `force` is off; with `force`, a file in the way that no manifest of ours lists, or something
+/// of ours of another kind; or it is no folder.
+pub fn may_write(dir: &Path, force: bool, holds: Holds, names: &[String]) -> Result<(), DatasetError> {
+    folder::may_write(dir, force, holds, names).map(|_| ())
 }
 
-/// Writes files that belong together, such as a study's, into `dir`: all of them or none.
+/// The files in a folder that would be gone or others' after writing these into it with `force`.
+pub fn replaced(dir: &Path, names: &[String]) -> Vec<PathBuf> {
+    names.iter().cloned().chain(manifest::files_of(dir)).map(|name| dir.join(name)).collect()
+}
+
+/// Writes files that belong together, such as a study's, into `dir`, with a manifest: all of them or none.
 ///
 /// # Errors
-/// As of [`write()`].
-pub fn put_all(dir: &Path, force: bool, files: &[(&str, Vec<u8>)]) -> Result<(), DatasetError> {
-    let folder = Folder::open(dir, force)?;
+/// As of [`may_write`], or the system's.
+pub fn put_all(dir: &Path, force: bool, holds: Holds, files: &[(&str, Vec<u8>)]) -> Result<(), DatasetError> {
+    let folder = Folder::open(dir, force, holds)?;
     files.iter().try_for_each(|(name, contents)| folder.put(name, contents))?;
-    folder.commit()
+    folder.commit_with_manifest()
+}
+
+/// The files that a dataset of a plan may have in these formats, with an estimate; `figures` and `more` beside them.
+pub fn names(plan: &Plan, formats: &[&'static Format], figures: bool, more: &[&str]) -> Vec<String> {
+    let tables: Vec<_> = table::of(plan, true).iter().map(|table| table.name).collect();
+    let mut names = Vec::new();
+    for format in formats {
+        names.extend(tables.iter().map(|table| format!("{table}.{}", format.name)));
+        names.push(format!("dataset.{}", format.name));
+    }
+    if figures {
+        names.extend(tables.iter().chain(&["angles"]).map(|stem| format!("{stem}.svg")));
+    }
+    names.extend(["README.md", "scene.toml", folder::MANIFEST, kalibr::NAME].map(String::from));
+    names.extend(more.iter().map(|name| name.to_string()));
+    names.extend(plan.attached.iter().map(|file| file.name.clone()));
+    names
 }
 
 /// Plays `plan` from 0 up to, not including, `end` and writes the folder `dir`.
@@ -139,11 +171,16 @@ fn write_in_blocks(
     if end == SimTime::FOREVER {
         return Err(DatasetError::Endless);
     }
+    let names = names(plan, &options.formats, options.draw.is_some(), &[]);
+    may_write(dir, options.force, Holds::Dataset, &names)?;
     let settled = reference::settled(plan, end)?;
-    let folder = Folder::open(dir, options.force)?;
+    let folder = Folder::open(dir, options.force, Holds::Dataset)?;
     let tables = table::of(plan, !options.estimates.is_empty());
     let mut book = Book::open(plan, &tables, &folder, &options.formats)?;
-    let clipped = play(plan, end, block, &mut book, options.progress, options.stop)?;
+    let mut figures = options.draw.map(|_| Figures::new(plan, end));
+    let playing = Playing { plan, end, block, stop: options.stop };
+    let clipped = play(&playing, &mut book, figures.as_mut(), options.progress)?;
+    let drawn = options.draw.zip(figures).map_or(Vec::new(), |(draw, figures)| draw(plan, &figures.done()));
     let quality = reference::write(plan, settled.as_ref(), end, |step| {
         book.row(table::TRUTH + 1 + plan.sensors.len(), step.t, &table::reference(plan.axes, step.attitude))
     })?;
@@ -160,7 +197,8 @@ fn write_in_blocks(
     let kalibr = kalibr::text(plan);
     others.extend(kalibr.iter().map(|text| (kalibr::NAME, text.as_bytes())));
     others.extend(attached.iter().map(|(name, contents)| (*name, contents.as_slice())));
-    others.extend(options.extra.iter().map(|(name, contents)| (name.as_str(), contents.as_slice())));
+    let extra = options.extra.iter().chain(&drawn);
+    others.extend(extra.map(|(name, contents)| (name.as_str(), contents.as_slice())));
     for (name, contents) in &others {
         folder.put(name, contents)?;
     }
@@ -173,7 +211,7 @@ fn write_in_blocks(
         run: options.run,
         link_faults: options.link_faults,
     };
-    folder.put("manifest.json", manifest::text(plan, end, &made, &folder)?.as_bytes())?;
+    folder.put(folder::MANIFEST, manifest::text(plan, end, &made, &folder)?.as_bytes())?;
     folder.commit()?;
 
     Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })
@@ -185,15 +223,22 @@ fn attached(plan: &Plan) -> Result<Vec<(&str, Vec<u8>)>, DatasetError> {
     plan.attached.iter().map(|file| Ok((file.name.as_str(), read(file)?))).collect()
 }
 
-/// Every moment into the book; gives back each sensor's clipped samples.
-fn play(
-    plan: &Plan,
+/// What is played into a dataset.
+struct Playing<'a> {
+    plan: &'a Plan,
     end: SimTime,
     block: usize,
+    stop: Option<&'a AtomicBool>,
+}
+
+/// Every moment into the book and the figures; gives back each sensor's clipped samples.
+fn play(
+    playing: &Playing<'_>,
     book: &mut Book,
+    mut figures: Option<&mut Figures>,
     progress: &mut dyn FnMut(SimTime),
-    stop: Option<&AtomicBool>,
 ) -> Result<Vec<u64>, DatasetError> {
+    let Playing { plan, end, block, stop } = *playing;
     let mut clipped = vec![0; plan.sensors.len()];
     let mut player = Player::new(plan, end, block);
     let mut now = SimTime::ZERO;
@@ -201,6 +246,9 @@ fn play(
         let more = player.play_block(|moment| {
             now = moment.t;
             book.row(table::TRUTH, moment.t, &table::truth(plan.axes, moment.truth))?;
+            if let Some(figures) = &mut figures {
+                figures.add(&moment);
+            }
             for reading in moment.readings {
                 clipped[reading.sensor] += u64::from(reading.clipped);
                 let row = table::reading(plan.axes, reading);

@@ -17,6 +17,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// `eprintln!` panics where standard error is closed or full: `cli::tell` does not.
+#![warn(clippy::print_stderr)]
+
 pub mod cli;
 pub mod clock;
 pub mod dataset;
@@ -25,6 +28,7 @@ pub mod earth;
 pub mod effects;
 pub mod filters;
 pub mod geometry;
+pub mod interrupt;
 pub mod keys;
 pub mod link;
 pub mod listen;

@@ -56,6 +56,15 @@ pub fn unread(file: impl AsFd) -> io::Result<usize> {
     Ok(usize::try_from(bytes).unwrap_or(usize::MAX))
 }
 
+/// Whether the process was started with SIGHUP ignored, as `nohup` starts one: the signal's bit of `SigIgn` in
+/// `/proc/self/status`, proc_pid_status(5). Where that cannot be read, it was not.
+pub fn ignores_hang_up() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (libc::SIGHUP - 1) & 1 == 1)
+}
+
 /// Puts what `to` refers to behind the descriptor `file`, whose number stays; what was behind it is closed.
 ///
 /// Whoever writes to `file` meanwhile writes to the one or to the other.

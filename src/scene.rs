@@ -21,6 +21,7 @@ mod nested;
 mod numbers;
 mod output;
 mod output_rate;
+mod outside;
 pub mod parts;
 mod preset;
 mod reader;
@@ -54,7 +55,7 @@ use document::{Mistake, Table};
 use reader::Reader;
 use section::Section;
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A scene, checked and compiled: all that a run needs to know.
 #[derive(Debug)]
@@ -87,6 +88,8 @@ pub struct Plan {
     pub drawn: Vec<Drawn>,
     /// Files that the scene as resolved names, which a copy of it needs beside it.
     pub attached: Vec<Attached>,
+    /// Every file that it was read from: the scene itself, where it is one, and those that it names.
+    pub files: Vec<PathBuf>,
     /// What a user should know of the scene before it is played, each with its place.
     pub warnings: Vec<String>,
     /// The scene as resolved, in TOML: playing it gives the same bytes.
@@ -127,7 +130,10 @@ impl Plan {
         let plan = read(&reader, table, name);
         match reader.finish() {
             Ok(found) => {
-                Ok(Plan { drawn: found.drawn, attached: found.attached, warnings: found.warnings, ..plan })
+                let mut files = found.files;
+                files.extend(Some(PathBuf::from(source)).filter(|path| path.is_file()));
+                let warnings = [found.warnings, outside::warnings(&plan)].concat();
+                Ok(Plan { drawn: found.drawn, attached: found.attached, files, warnings, ..plan })
             }
             Err(mistakes) => Err(SceneError { mistakes }),
         }
@@ -277,6 +283,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
         output_faults: faults.of_outputs,
         drawn: Vec::new(),
         attached: Vec::new(),
+        files: Vec::new(),
         warnings: Vec::new(),
         resolved: resolved.to_string(),
     }

@@ -19,7 +19,6 @@ mod ears;
 mod finish;
 mod granted;
 mod hold;
-mod interrupt;
 mod links;
 mod lockstep;
 mod overload;
@@ -35,7 +34,6 @@ mod watch;
 
 pub use answers::{Judging, Off};
 pub use control::run;
-pub use interrupt::on_interrupt;
 pub use pacer::Speed;
 pub use watch::{Record, Watch, Watched};
 

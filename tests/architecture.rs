@@ -23,6 +23,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("keys", &["double", "quantity", "time", "geometry"]),
     // The system calls, the only place of `unsafe`.
     ("os", &[]),
+    // Whether a signal is ignored is the kernel's to say.
+    ("interrupt", &["os"]),
     ("earth", &[]),
     // Motion and sensor declare their keys as data, so they need `keys` and `quantity`; a sensor's streams are
     // named by it and seeded from outside, so it needs `random`: all three are foundation.
@@ -48,8 +50,23 @@ const ARROWS: &[(&str, &[&str])] = &[
     // The report of a run holds its score, plain data.
     ("report", &["score"]),
     // The scene's plan, its trajectory and its sensors are what a session plays and reports on.
-    ("session", &["player", "wire", "clock", "link", "score", "scene", "sensor", "motion", "report", "os"]),
-    ("listen", &["link", "wire", "clock", "sensor", "report"]),
+    (
+        "session",
+        &[
+            "player",
+            "wire",
+            "clock",
+            "link",
+            "score",
+            "scene",
+            "sensor",
+            "motion",
+            "report",
+            "os",
+            "interrupt",
+        ],
+    ),
+    ("listen", &["link", "wire", "clock", "sensor", "report", "interrupt"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
     ("dataset", &["player", "scene", "sensor", "motion", "parallel", "earth"]),
     ("study", &["player", "motion", "scene", "sensor", "parallel", "os"]),
@@ -57,8 +74,24 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "scene", "effects", "filters", "session", "listen", "dataset", "score", "study", "report",
-            "motion", "sensor", "wire", "link", "os", "clock", "earth", "parallel",
+            "scene",
+            "effects",
+            "filters",
+            "session",
+            "listen",
+            "dataset",
+            "score",
+            "study",
+            "report",
+            "motion",
+            "sensor",
+            "wire",
+            "link",
+            "os",
+            "clock",
+            "earth",
+            "parallel",
+            "interrupt",
         ],
     ),
 ];
@@ -67,7 +100,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 const OUTSIDE: &[(&str, &[&str])] = &[
     // The demonstration of `cli` runs a firmware, which has a processor of its own; `parallel` spreads jobs that have
     // nothing to do with one another over the processors; `clock` parks the thread that waits on it.
-    ("std::thread", &["session", "link", "cli", "parallel", "clock"]),
+    ("std::thread", &["session", "link", "cli", "parallel", "clock", "interrupt"]),
     // `os` reads what the kernel shows as files of its own: who holds a port, what a device is.
     ("std::fs", &["scene", "dataset", "link", "os", "score"]),
     ("std::net", &["link"]),

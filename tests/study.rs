@@ -60,6 +60,7 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
         "allan.svg",
         "cost.csv",
         "cost.svg",
+        "manifest.json",
         "stability.csv",
         "stability.svg",
     ];
@@ -98,7 +99,7 @@ fn one_study_writes_its_own_files_and_an_existing_folder_is_refused_before_anyth
     let done = study(&arguments).assert().success();
     let results: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
     assert!(results["stability"].is_null() && results["quick"] == true, "{results}");
-    assert_eq!(files(&out), ["accuracy.csv", "accuracy.svg"].map(String::from).into());
+    assert_eq!(files(&out), ["accuracy.csv", "accuracy.svg", "manifest.json"].map(String::from).into());
     let rows = rows(&out.join("accuracy.csv")).1;
     assert_eq!(results["accuracy"].as_array().unwrap().len(), rows.len(), "the same rows for all");
 

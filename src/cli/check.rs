@@ -5,7 +5,7 @@ mod json;
 mod text;
 
 use super::budget::Budget;
-use super::{Refusal, Verdict, options, say};
+use super::{Refusal, Verdict, generate, options, say};
 use crate::scene::{Plan, Reference};
 use crate::sensor::{SensorKind, SensorPlan, lsb, white_noise};
 use crate::wire;
@@ -25,13 +25,14 @@ pub struct Arguments {
 pub fn check(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
     options::limits(&[], &plan)?;
+    generate::affordable(&plan, 1)?;
     let settle = |reference: Reference| reference.settled(&plan.trajectory, plan.duration);
     let reference = plan.reference.map(settle).transpose();
     let reference = reference.map_err(|why| Refusal(format!("[reference]: {why}")))?;
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&json::json(&plan, reference.as_ref()))? + "\n"));
+        say(&(serde_json::to_string_pretty(&json::json(&plan, reference.as_ref()))? + "\n"))?;
     } else {
-        say(&text::text(&plan, reference.as_ref()));
+        say(&text::text(&plan, reference.as_ref()))?;
     }
     Ok(Verdict::Fine)
 }

@@ -1,15 +1,21 @@
 //! `ratetable generate`: a dataset.
 
 use super::progress::Bar;
-use super::{Refusal, Verdict};
-use crate::dataset::{self, FEATURES, FORMATS, Figure, Format, Made, Options, RunOptions, Shard, Summary};
+use super::{Refusal, Verdict, clash, tell};
+use crate::dataset::{
+    self, Bounds, FEATURES, FORMATS, Figure, Format, Holds, Made, Options, RunOptions, Shard, Summary,
+};
+use crate::interrupt::on_interrupt;
 use crate::parallel;
 use crate::report::Report;
 use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
 use crate::scene::{Plan, Runs, nearest};
-use crate::session::{Outcome, on_interrupt};
+use crate::session::Outcome;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// Folders that one command makes at most.
+const MOST_RUNS: u64 = 1_000_000;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -58,17 +64,19 @@ pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
         return generate_runs(arguments, &runs);
     }
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
-    dataset::may_write(&arguments.out, arguments.force)?;
-    plan.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    let names = dataset::names(&plan, &arguments.format, arguments.figures, &[]);
+    dataset::may_write(&arguments.out, arguments.force, Holds::Dataset, &names)?;
+    clash::folder(&plan, &dataset::replaced(&arguments.out, &names))?;
+    affordable(&plan, 1)?;
+    plan.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let started = Instant::now();
     let bar = Bar::new(plan.duration);
     let stop = on_interrupt();
-    let figures = if arguments.figures { figures(&plan) } else { Vec::new() };
     let mut progress = |t| bar.offline(t);
     let options = Options {
         force: arguments.force,
         formats: arguments.format.clone(),
-        extra: &figures,
+        draw: arguments.figures.then_some(&figures),
         stop: Some(&stop),
         ..Options::new(&mut progress)
     };
@@ -76,12 +84,12 @@ pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
     bar.clear();
     let summary = written?;
     let seconds = started.elapsed().as_secs_f64();
-    eprintln!(
+    tell(&format!(
         "{}: {} of scene, {} rows in {seconds:.2} s",
         summary.folder.display(),
         plan.duration,
         summary.rows
-    );
+    ));
     say_clipped(&plan, &summary);
     Ok(Verdict::Fine)
 }
@@ -98,15 +106,24 @@ fn several(arguments: &Arguments) -> Result<Option<Runs>, Refusal> {
 
 fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal> {
     let runs = arguments.runs.unwrap_or(scene.combinations());
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    let mine = shard.count(runs);
+    if mine > MOST_RUNS {
+        return Err(Refusal(format!(
+            "--runs {runs} makes {mine} folders here, and {MOST_RUNS} is the most: make a share of them, such as --shard 1/{}, or write fewer",
+            runs.div_ceil(MOST_RUNS)
+        )));
+    }
     let first = scene.plan(0)?;
-    first.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    affordable(&first, mine)?;
+    first.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     let (started, bar, stop) = (Instant::now(), Bar::of_jobs("runs"), on_interrupt());
     let options = RunOptions {
         runs,
-        shard: arguments.shard.unwrap_or(Shard::WHOLE),
+        shard,
         force: arguments.force,
         formats: arguments.format.clone(),
-        extra: &|plan| if arguments.figures { figures(plan) } else { Vec::new() },
+        draw: arguments.figures.then_some(&figures),
         threads: parallel::all_cores(),
         progress: &|done, all| bar.runs(done, all),
         stop: &stop,
@@ -116,23 +133,30 @@ fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal
     let Made { written, kept } = made?;
     let there = if kept > 0 { format!(", {kept} were there already") } else { String::new() };
     let seconds = started.elapsed().as_secs_f64();
-    eprintln!("{}: {written} runs of {} in {seconds:.2} s{there}", arguments.out.display(), first.duration);
+    tell(&format!(
+        "{}: {written} runs of {} in {seconds:.2} s{there}",
+        arguments.out.display(),
+        first.duration
+    ));
     Ok(Verdict::Fine)
+}
+
+/// Refuses what no disk and no patience would hold.
+pub fn affordable(plan: &Plan, runs: u64) -> Result<(), Refusal> {
+    let absurd = Bounds::of(plan, plan.duration).times(runs).absurd();
+    absurd.map_or(Ok(()), |why| Err(Refusal(format!("{}: {why}", plan.name))))
 }
 
 fn say_clipped(plan: &Plan, summary: &Summary) {
     for (sensor, clipped) in plan.sensors.iter().zip(&summary.clipped).filter(|(_, clipped)| **clipped > 0) {
-        eprintln!("notice: {clipped} {} samples were beyond the range and are clipped", sensor.kind);
+        tell(&format!("notice: {clipped} {} samples were beyond the range and are clipped", sensor.kind));
     }
 }
 
 /// Every figure as a file.
-fn figures(plan: &Plan) -> Vec<(String, Vec<u8>)> {
-    let figures = dataset::figures(plan, plan.duration);
-    figures
-        .iter()
-        .map(|figure| (format!("{}.svg", figure.file_stem), draw(plan, figure).into_bytes()))
-        .collect()
+fn figures(plan: &Plan, figures: &[Figure]) -> Vec<(String, Vec<u8>)> {
+    let file = |figure: &Figure| (format!("{}.svg", figure.file_stem), draw(plan, figure).into_bytes());
+    figures.iter().map(file).collect()
 }
 
 /// Readings one under another with the truth over each; reference angles together in one panel.
@@ -176,9 +200,14 @@ fn panel<'a>(figure: &Figure, title: &str, lines: Vec<Line<'a>>) -> Panel<'a> {
     }
 }
 
+/// The report of a run in its folder.
+const REPORT: &str = "report.json";
+
 /// Asks before a run whether its folder may be written.
-pub fn may_write(dir: &Path, force: bool) -> Result<(), Refusal> {
-    Ok(dataset::may_write(dir, force)?)
+pub fn may_write(plan: &Plan, dir: &Path, force: bool) -> Result<(), Refusal> {
+    let names = dataset::names(plan, &FORMATS[..1], false, &[REPORT]);
+    dataset::may_write(dir, force, Holds::Dataset, &names)?;
+    clash::folder(plan, &dataset::replaced(dir, &names))
 }
 
 /// The dataset of what a run played, with the estimates that came back and the run's report.
@@ -191,14 +220,17 @@ pub fn after_run(
 ) -> Result<(), Refusal> {
     let report = serde_json::to_string_pretty(report)? + "\n";
     let mut progress = |_| {};
+    // Ctrl-C that ended the run is no wish to lose its dataset.
+    let stop = if outcome.interrupted { Default::default() } else { on_interrupt() };
     let options = Options {
         force,
+        stop: Some(&stop),
         estimates: &outcome.estimates,
         link_faults: &outcome.faults,
-        extra: &[("report.json".to_string(), report.into_bytes())],
+        extra: &[(REPORT.to_string(), report.into_bytes())],
         ..Options::new(&mut progress)
     };
     let summary = dataset::write(plan, outcome.played, dir, options)?;
-    eprintln!("{}: {} rows", summary.folder.display(), summary.rows);
+    tell(&format!("{}: {} rows", summary.folder.display(), summary.rows));
     Ok(())
 }

@@ -46,7 +46,7 @@ pub fn list(arguments: &Arguments) -> Result<Verdict, Refusal> {
             let body = body(*what)?;
             let lines: String =
                 body.lines().map(|line| format!("{}\n", format!("{indent}{line}").trim_end())).collect();
-            say(&format!("{heading}{lines}"));
+            say(&format!("{heading}{lines}"))?;
         }
     }
     Ok(Verdict::Fine)

@@ -1,8 +1,8 @@
 //! `ratetable listen`: the meter on anybody's stream.
 
 use super::progress::Bar;
-use super::{Refusal, Verdict, options, say, summary};
-use crate::dataset;
+use super::{Refusal, Verdict, options, say, summary, tell};
+use crate::dataset::{self, Holds};
 use crate::link::{self, Address};
 use crate::listen::{self, Event, Heard, Job, Meter};
 use crate::report::chart::{Distribution, Histogram, Marker, histogram};
@@ -12,6 +12,9 @@ use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use std::path::PathBuf;
 use std::time::Duration;
+
+/// The files of the output folder.
+const FILES: [&str; 2] = ["report.json", "intervals.svg"];
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -42,7 +45,7 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let shape = serde_json::to_value(shape(&arguments.from))?;
     arguments.limit.iter().try_for_each(|limit| limit.check(&shape))?;
     if let Some(dir) = &arguments.out {
-        dataset::may_write(dir, arguments.force)?;
+        dataset::may_write(dir, arguments.force, Holds::Listen, &FILES.map(String::from))?;
     }
     let span = arguments.span.filter(|span| *span != SimTime::FOREVER);
     let job = Job {
@@ -58,16 +61,17 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
     };
     let heard = hear(&job, span.unwrap_or(SimTime::FOREVER))?;
     let report = report(&arguments.from, &heard, baud, &arguments.limit)?;
-    eprint!("{}", summary::heard(&report, heard.interrupted));
+    tell(&summary::heard(&report, heard.interrupted));
     if let Some(dir) = &arguments.out {
         let json = serde_json::to_string_pretty(&report)? + "\n";
         let chart = intervals(&arguments.from, &heard.meter, &report.sensors);
-        let files = [("report.json", json.into_bytes()), ("intervals.svg", chart.into_bytes())];
-        dataset::put_all(dir, arguments.force, &files)?;
-        eprintln!("{}: written", dir.display());
+        let [report, intervals] = FILES;
+        let files = [(report, json.into_bytes()), (intervals, chart.into_bytes())];
+        dataset::put_all(dir, arguments.force, Holds::Listen, &files)?;
+        tell(&format!("{}: written", dir.display()));
     }
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+        say(&(serde_json::to_string_pretty(&report)? + "\n"))?;
     }
     Ok(if report.ok { Verdict::Fine } else { Verdict::Failed })
 }

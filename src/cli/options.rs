@@ -7,7 +7,11 @@ use crate::scene::{Destination, Output, Plan};
 use crate::score::{Align, Delay};
 use crate::session::Speed;
 use crate::time::SimTime;
+use std::ops::RangeInclusive;
 use std::time::Duration;
+
+/// Scene seconds a second that can be paced: at the slowest the longest scene, 292 years, still has due times.
+const SPEEDS: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// `--for`: a time of scene, or `forever`.
 pub fn span(text: &str) -> Result<SimTime, String> {
@@ -33,11 +37,12 @@ pub fn wait(text: &str) -> Result<Duration, String> {
 pub fn speed(text: &str) -> Result<Speed, String> {
     match text.parse::<f64>() {
         _ if text == "max" => Ok(Speed::Max),
-        Ok(times) if times.is_finite() && times > 0.0 => Ok(Speed::Times(times)),
-        _ => {
-            Err("write 1 for real time, another number above 0 for so many scene seconds a second, or max"
-                .into())
-        }
+        Ok(times) if SPEEDS.contains(&times) => Ok(Speed::Times(times)),
+        _ => Err(format!(
+            "write 1 for real time, another number from {:e} to {:e} for so many scene seconds a second, or max",
+            SPEEDS.start(),
+            SPEEDS.end()
+        )),
     }
 }
 

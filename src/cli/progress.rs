@@ -1,5 +1,6 @@
 //! Live progress on standard error, where that is a terminal.
 
+use super::tell;
 use crate::listen;
 use crate::session::{Off, Progress};
 use crate::time::SimTime;
@@ -91,7 +92,7 @@ impl Bar {
 
     /// A line above the bar.
     pub fn line(&self, text: &str) {
-        self.0.suspend(|| eprintln!("{text}"));
+        self.0.suspend(|| tell(text));
     }
 
     /// Takes it off the screen.

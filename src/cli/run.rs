@@ -1,9 +1,10 @@
 //! `ratetable run`: a scene in real time.
 
 use super::budget::Budget;
+use super::clash::{self, Besides};
 use super::demo::{Firmware, Received};
 use super::progress::Bar;
-use super::{Refusal, Verdict, options, say, summary};
+use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::link::Address;
 use crate::report::{
     AttitudeReport, Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
@@ -14,6 +15,7 @@ use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
 use serde_json::Value;
+use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -78,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let demonstration = outputs.is_empty();
     let mut outputs = if demonstration { vec![demo_output()] } else { outputs };
     for idle in OutputFault::equip(&plan.output_faults, &mut outputs) {
-        eprintln!("warning: the fault {idle} concerns no output of this run");
+        tell(&format!("warning: the fault {idle} concerns no output of this run"));
     }
     let limits = options::limits(&arguments.limit, &plan)?;
     let mut report = shape(&plan, &outputs);
@@ -111,14 +113,16 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
-    judge(&mut report, &limits, outcome.command, fed)?;
-    eprint!("{}", summary::run(&report, &outcome));
+    let ended = Ended { command: outcome.command, interrupted: outcome.interrupted, fed };
+    judge(&mut report, &limits, &ended)?;
+    tell(&summary::run(&report, &outcome));
     if let Some(dir) = &arguments.out {
         super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
     }
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+        say(&(serde_json::to_string_pretty(&report)? + "\n"))?;
     }
+    written_to_the_end(&outcome)?;
     Ok(match outcome.command {
         Some(code) if code != 0 => Verdict::Code(u8::try_from(code).unwrap_or(1)),
         _ if report.ok => Verdict::Fine,
@@ -183,16 +187,19 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
     if arguments.cpu.is_some() && arguments.speed == Speed::Max {
         return Err(Refusal("--cpu keeps the pacing thread to a processor, and --speed max paces nothing: leave out one of the two".into()));
     }
-    plan.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    plan.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     for output in outputs {
         wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
         wire::warnings(output.to.protocol, &plan.sensors)
             .iter()
-            .for_each(|warning| eprintln!("warning: {warning}"));
+            .for_each(|warning| tell(&format!("warning: {warning}")));
     }
     if let Some(dir) = &arguments.out {
-        super::generate::may_write(dir, arguments.force)?;
+        super::generate::may_write(plan, dir, arguments.force)?;
     }
+    let besides =
+        Besides { out: arguments.out.as_deref(), ground: arguments.qgc.as_ref(), report: arguments.json };
+    clash::outputs(plan, outputs, &besides)?;
     match arguments.speed {
         Speed::Times(times) => afford(plan, outputs, times, arguments.force),
         Speed::Max => Ok(()),
@@ -210,7 +217,7 @@ fn afford(plan: &Plan, outputs: &[Output], speed: f64, force: bool) -> Result<()
             (false, true) => {
                 let stretched = output.overload == Overload::Stretch;
                 let but = if stretched { "scene time is stretched" } else { "the rest is lost" };
-                eprintln!("warning: {}; {but}", budget.arithmetic());
+                tell(&format!("warning: {}; {but}", budget.arithmetic()));
             }
         }
     }
@@ -329,30 +336,59 @@ pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
     report.links = outcome.links.clone();
 }
 
-/// Losses, broken limits, and a command that failed; `fed` says that a controller chose how many packets it gets.
-pub(super) fn judge(
-    report: &mut Report,
-    limits: &[Limit],
-    command: Option<i32>,
-    fed: bool,
-) -> Result<(), Refusal> {
+/// How a run came to its end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ended {
+    /// The exit code of the command that was run.
+    pub command: Option<i32>,
+    /// Whether the user ended it.
+    pub interrupted: bool,
+    /// Whether a controller chose how many packets it gets.
+    pub fed: bool,
+}
+
+/// Losses, broken limits, a command that failed, and a run that never was.
+pub(super) fn judge(report: &mut Report, limits: &[Limit], ended: &Ended) -> Result<(), Refusal> {
+    // A reader of standard output that has enough, as `head` has, loses nothing that anybody wants.
+    let quiet = |link: &LinkReport| is_stdout(link) && broken_by(link, ErrorKind::BrokenPipe);
+    let excused = report.links.iter().any(quiet)
+        && report.links.iter().all(|link| quiet(link) || (link.dropped == 0 && link.queued == 0));
     // A controller that asks for fewer packets than there are samples loses none.
-    let excused = |sensor: &SensorReport| if fed { sensor.replaced } else { 0 };
-    let lost = report.sensors.iter().filter(|sensor| sensor.dropped > excused(sensor));
+    let given_up = |sensor: &SensorReport| if ended.fed { sensor.replaced } else { 0 };
+    let lost = report.sensors.iter().filter(|sensor| !excused && sensor.dropped > given_up(sensor));
     let mut failed: Vec<_> =
         lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
-    let broken =
-        report.links.iter().filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?)));
-    failed.extend(broken);
-    failed.extend(
-        command.filter(|code| *code != 0).map(|code| format!("the command ended with exit code {code}")),
-    );
-    if command == Some(0) && report.links.iter().all(|link| link.packets == 0) {
+    let broken = report.links.iter().filter(|link| !quiet(link));
+    failed.extend(broken.filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?))));
+    let code = ended.command.filter(|code| *code != 0);
+    failed.extend(code.map(|code| format!("the command ended with exit code {code}")));
+    let nothing = report.links.iter().all(|link| link.packets == 0);
+    if ended.command == Some(0) && nothing {
         failed.push("the command ended before anything was sent: it must open the link, {} in its arguments or $RATETABLE_LINK".into());
+    } else if ended.interrupted && nothing {
+        failed.push("it was ended before anything was sent".into());
     }
     let value = serde_json::to_value(&*report)?;
     failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
     report.ok = failed.is_empty();
     report.failed = failed;
     Ok(())
+}
+
+fn is_stdout(link: &LinkReport) -> bool {
+    link.to.parse::<Destination>().is_ok_and(|to| to.address.is_stdout())
+}
+
+fn broken_by(link: &LinkReport, kind: ErrorKind) -> bool {
+    link.broken.as_ref().is_some_and(|broken| *broken == kind.to_string())
+}
+
+/// Whether standard output took the packets that were for it, as long as somebody read them.
+///
+/// # Errors
+/// It did not, as of a full disk: what was to be there is not.
+pub(super) fn written_to_the_end(outcome: &Outcome) -> Result<(), Refusal> {
+    let refused = |link: &&LinkReport| is_stdout(link) && !broken_by(link, ErrorKind::BrokenPipe);
+    let broken = outcome.links.iter().filter(refused).find_map(|link| link.broken.clone());
+    broken.map_or(Ok(()), |why| Err(Refusal(format!("cannot write to standard output: {why}"))))
 }

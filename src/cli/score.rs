@@ -7,8 +7,8 @@ mod sources;
 mod text;
 
 use super::options::{self, Alignment};
-use super::{Refusal, Verdict, say};
-use crate::dataset;
+use super::{Refusal, Verdict, say, tell};
+use crate::dataset::{self, Holds};
 use crate::geometry::Axes;
 use crate::report::{Limit, LimitError, ScoreReport, Scored};
 use crate::score::{self, Clock, Delay, Figures, Options, Series, Unjudged};
@@ -94,7 +94,7 @@ enum ClockOf {
 
 pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(dir) = &arguments.out {
-        dataset::may_write(dir, arguments.force)?;
+        dataset::may_write(dir, arguments.force, Holds::Score, &book::FILES.map(String::from))?;
     }
     let truth = sources::truth(&arguments.truth, arguments.axes)?;
     let sources = sources::estimates(&truth, &arguments.estimate, arguments.axes)?;
@@ -105,14 +105,14 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
         scored.push(one(&truth, source, arguments, book.as_mut())?);
     }
     let report = report(arguments, scored)?;
-    eprint!("{}", text::report(&report));
+    tell(&text::report(&report));
     let json = serde_json::to_string_pretty(&report)? + "\n";
     if let (Some(book), Some(dir)) = (book, &arguments.out) {
         book.close(&report, &truth, &json)?;
-        eprintln!("{}: written", dir.display());
+        tell(&format!("{}: written", dir.display()));
     }
     if arguments.json {
-        say(&json);
+        say(&json)?;
     }
     Ok(if report.ok { Verdict::Fine } else { Verdict::Failed })
 }

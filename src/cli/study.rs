@@ -4,8 +4,8 @@ mod charts;
 mod tables;
 
 use super::progress::Bar;
-use super::{Refusal, Verdict, say};
-use crate::dataset;
+use super::{Refusal, Verdict, say, tell};
+use crate::dataset::{self, Holds};
 use crate::motion::Trajectory;
 use crate::scene::{Plan, builtin, nearest};
 use crate::study::motions::{self, Case, OfTrajectory};
@@ -50,6 +50,17 @@ enum What {
     All,
 }
 
+impl What {
+    /// The files that it writes.
+    fn files(self) -> Vec<String> {
+        let all = [What::Accuracy, What::Stability, What::Cost, What::Allan];
+        let mine = all.into_iter().filter(|what| self == What::All || self == *what);
+        let name =
+            |what: What| what.to_possible_value().map_or(String::new(), |value| value.get_name().into());
+        mine.map(name).flat_map(|name| [format!("{name}.csv"), format!("{name}.svg")]).collect()
+    }
+}
+
 /// The rows of what was studied.
 #[derive(Debug, Serialize)]
 struct Results {
@@ -74,7 +85,7 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let (what, scene) = asked(arguments)?;
     let plan = scene.map(|scene| Plan::load(scene, &[])).transpose()?;
     if let Some(dir) = &arguments.out {
-        dataset::may_write(dir, arguments.force)?;
+        dataset::may_write(dir, arguments.force, Holds::Study, &what.files())?;
     }
     let cases = cases(plan.as_ref(), arguments.quick)?;
     let (costly, noisy) = match &plan {
@@ -83,13 +94,13 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
     };
     let results = run(what, arguments.quick, &cases, costly, noisy);
     if let Some(dir) = &arguments.out {
-        dataset::put_all(dir, arguments.force, &files(&results, &cases)?)?;
-        eprintln!("{}: written", dir.display());
+        dataset::put_all(dir, arguments.force, Holds::Study, &files(&results, &cases)?)?;
+        tell(&format!("{}: written", dir.display()));
     }
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&results)? + "\n"));
+        say(&(serde_json::to_string_pretty(&results)? + "\n"))?;
     } else {
-        say(&text(&results, &cases));
+        say(&text(&results, &cases))?;
     }
     Ok(Verdict::Fine)
 }

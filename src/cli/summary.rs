@@ -95,7 +95,7 @@ fn sensors(report: &Report) -> String {
     let paced = report.sensors.iter().any(|sensor| sensor.late_us.is_some());
     let mut heading = vec!["sensor", "asked Hz", "sent Hz"];
     heading.extend(received.then_some("received Hz"));
-    heading.extend(["made", "sent", "dropped"]);
+    heading.extend(["made", "sent", "dropped", "queued"]);
     if paced {
         heading.extend(["late µs p50", "p99", "p99.9", "max"]);
     }
@@ -103,7 +103,7 @@ fn sensors(report: &Report) -> String {
     let rows = report.sensors.iter().map(|sensor| {
         let mut row = vec![sensor.name.clone(), number(sensor.rate_hz), hz(sensor.sent_hz)];
         row.extend(received.then(|| hz(sensor.received_hz)));
-        row.extend([sensor.made, sensor.sent, sensor.dropped].map(|count| count.to_string()));
+        row.extend([sensor.made, sensor.sent, sensor.dropped, sensor.queued].map(|count| count.to_string()));
         if paced {
             let late = sensor.late_us.map(|late| [late.p50, late.p99, late.p99_9, late.max].map(number));
             row.extend(late.unwrap_or_else(|| ["-"; 4].map(String::from)));
@@ -120,16 +120,28 @@ fn links(report: &Report) -> String {
         let most = link.queue_bytes.map_or("-".into(), |bytes| bytes.to_string());
         vec![
             link.name.clone(),
-            link.packets.to_string(),
-            link.bytes.to_string(),
+            link.made.to_string(),
+            link.sent.to_string(),
             link.dropped.to_string(),
+            link.queued.to_string(),
+            link.bytes.to_string(),
             missed,
             most,
             load,
         ]
     });
     table(
-        &["link", "packets", "bytes", "dropped", "missed by receiver", "most waiting", "of baud rate"],
+        &[
+            "link",
+            "made",
+            "sent",
+            "dropped",
+            "queued",
+            "bytes",
+            "missed by receiver",
+            "most waiting",
+            "of baud rate",
+        ],
         &rows.collect::<Vec<_>>(),
     )
 }

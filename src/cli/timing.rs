@@ -6,10 +6,12 @@ mod ledger;
 mod reader;
 mod results;
 
+use super::clash::{self, Besides};
 use super::progress::Bar;
-use super::{Refusal, Verdict, options, run, say};
+use super::run::{self, written_to_the_end};
+use super::{Refusal, Verdict, options, say, tell};
 use crate::clock::WallClock;
-use crate::dataset::Folder;
+use crate::dataset::{self, DatasetError, Folder, Holds};
 use crate::link::Address;
 use crate::report::Limit;
 use crate::scene::{Destination, Output, Plan};
@@ -20,8 +22,9 @@ use collector::Collector;
 use ledger::Ledger;
 use reader::{Arrivals, Came, Reader};
 use std::cell::RefCell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::slice::from_ref;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -31,6 +34,8 @@ const SCENE: &str = "still";
 const SLICE: SimTime = SimTime(NANOS);
 /// How long to wait for somebody on a link that is no pty.
 const WAIT: Duration = Duration::from_secs(30);
+/// The files of the output folder.
+const FILES: [&str; 3] = ["timing.csv", "timing.svg", "report.json"];
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -72,22 +77,31 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let as_json = serde_json::to_value(&report)?;
     limits.iter().try_for_each(|limit| limit.check(&as_json))?;
     wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
-    let folder = arguments.out.as_ref().map(|dir| Folder::open(dir, arguments.force)).transpose()?;
+    let besides = Besides { out: arguments.out.as_deref(), ground: None, report: arguments.json };
+    clash::outputs(&plan, from_ref(&output), &besides)?;
+    let folder = arguments.out.as_ref().map(|dir| folder(dir, arguments.force)).transpose()?;
     let measured = measure(arguments, Arc::new(plan), output, folder.as_ref())?;
     results::fill(&mut report, &measured);
-    results::judge(&mut report, &limits)?;
-    eprint!("{}", results::text(&report, measured.outcome.interrupted));
+    results::judge(&mut report, &limits, measured.outcome.interrupted)?;
+    tell(&results::text(&report, measured.outcome.interrupted));
     if let (Some(folder), Some(dir)) = (folder, &arguments.out) {
         let picture = charts::timing(&report, &measured.ledger, &measured.bare());
         folder.put("timing.svg", picture.as_bytes())?;
         folder.put("report.json", (serde_json::to_string_pretty(&report)? + "\n").as_bytes())?;
-        folder.commit()?;
-        eprintln!("{}: timing.csv, timing.svg, report.json", dir.display());
+        folder.commit_with_manifest()?;
+        tell(&format!("{}: {}", dir.display(), FILES.join(", ")));
     }
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&report)? + "\n"));
+        say(&(serde_json::to_string_pretty(&report)? + "\n"))?;
     }
+    written_to_the_end(&measured.outcome)?;
     Ok(if report.run.ok { Verdict::Fine } else { Verdict::Failed })
+}
+
+/// The output folder, begun.
+fn folder(dir: &Path, force: bool) -> Result<Folder, DatasetError> {
+    dataset::may_write(dir, force, Holds::Timing, &FILES.map(String::from))?;
+    Folder::open(dir, force, Holds::Timing)
 }
 
 /// The one link that is measured.

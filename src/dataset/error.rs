@@ -17,6 +17,36 @@ pub enum DatasetError {
         /// The folder.
         path: PathBuf,
     },
+    /// Files that would be replaced and are not ours.
+    #[error("{} has {} that would be replaced and that no manifest of ours lists: move {} away, or name another folder", path.display(), listed(names), if names.len() == 1 { "it" } else { "them" })]
+    NotOurs {
+        /// The folder.
+        path: PathBuf,
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// The output folder holds something of ours of another kind.
+    #[error("{} holds a {there}, which a {wanted} would replace or mix with; name another folder", path.display())]
+    OfAnotherKind {
+        /// The folder.
+        path: PathBuf,
+        /// What is there.
+        there: String,
+        /// What was to be written.
+        wanted: &'static str,
+    },
+    /// Another process is writing into the folder.
+    #[error("{} is being written by another process: wait until it has ended, or name another folder", path.display())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder came into being while its contents were made.
+    #[error("{} has been made by another process meanwhile: that one is left as it is, and this one is not kept; name another folder", path.display())]
+    Appeared {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The output path is something else.
     #[error("{} is not a folder; the output is a folder, so name a new one", path.display())]
     NotAFolder {
@@ -73,5 +103,15 @@ impl DatasetError {
     /// For `map_err` of an operation at `path`.
     pub(super) fn io<'a>(doing: &'static str, path: &'a Path) -> impl Fn(io::Error) -> DatasetError + 'a {
         move |source| DatasetError::Io { doing, path: path.to_path_buf(), source }
+    }
+}
+
+/// A few names, and how many more.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 5;
+    let shown = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    match names.len() {
+        0..=SHOWN => shown,
+        all => format!("{shown} and {} more", all - SHOWN),
     }
 }

@@ -1,11 +1,17 @@
 //! The four figures of the paper as plain series: three sensors with their truth, and the reference angles.
+//!
+//! However long a scene is, a line keeps a few thousand points: of every stretch of time as wide as a part of a pixel
+//! its first, its last, its least and its greatest, which draw as all of them would.
 
 use super::table;
-use crate::player::{self, Player};
+use crate::geometry::Axes;
+use crate::player::Moment;
 use crate::scene::Plan;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
-use std::convert::Infallible;
+
+/// Stretches of time that a line is kept by: twice the pixels of a chart's width.
+const STRETCHES: i64 = 2000;
 
 /// One figure, against time in seconds.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,22 +33,39 @@ pub struct Figure {
 pub struct Series {
     /// Such as `x`.
     pub label: &'static str,
-    /// Time in s and value in the figure's unit, every sample.
+    /// Time in s and value in the figure's unit: every sample of a short scene, of a long one those that show.
     pub points: Vec<(f64, f64)>,
     /// Whether it is free of errors.
     pub is_truth: bool,
 }
 
-/// Plays `plan` from 0 up to, not including, `end` and gathers its figures, in the scene's axes: one for each sensor
-/// that it has (gyroscope in deg/s, accelerometer in m/s², magnetometer in µT, barometer in hPa, GPS in m north, east
-/// and down of the start; the readings and the true ones), then the reference roll, pitch and yaw in degrees.
-pub fn figures(plan: &Plan, end: SimTime) -> Vec<Figure> {
-    let mut figures: Vec<_> = plan.sensors.iter().map(|sensor| of_sensor(sensor.kind)).collect();
-    let mut angles = of_angles();
-    let Ok(()) = Player::new(plan, end, player::BLOCK).play(|moment| {
-        let t = moment.t.seconds();
-        let truth = table::truth(plan.axes, moment.truth);
-        angles.add(t, &truth[4..7], f64::to_degrees);
+/// Gathers the figures of a plan that is played once, in the scene's axes: one for each sensor that it has (gyroscope
+/// in deg/s, accelerometer in m/s², magnetometer in µT, barometer in hPa, GPS in m north, east and down of the start;
+/// the readings and the true ones), then the reference roll, pitch and yaw in degrees.
+#[derive(Debug)]
+pub struct Figures {
+    axes: Axes,
+    /// How long a stretch is, ns.
+    width: i64,
+    figures: Vec<Figure>,
+    /// For each figure and line, the stretch at hand.
+    stretches: Vec<Vec<Stretch>>,
+}
+
+impl Figures {
+    /// Of a plan played from 0 up to `end`, with nothing in them yet.
+    pub fn new(plan: &Plan, end: SimTime) -> Figures {
+        let mut figures: Vec<_> = plan.sensors.iter().map(|sensor| of_sensor(sensor.kind)).collect();
+        figures.push(of_angles());
+        let empty = |figure: &Figure| vec![Stretch::default(); figure.series.len()];
+        let stretches = figures.iter().map(empty).collect();
+        Figures { axes: plan.axes, width: (end.0 / STRETCHES).max(1), figures, stretches }
+    }
+
+    /// Takes in what is due at one time; times go forward.
+    pub fn add(&mut self, moment: &Moment<'_>) {
+        let truth = table::truth(self.axes, moment.truth);
+        self.put(self.figures.len() - 1, moment.t, &truth[4..7], f64::to_degrees);
         for reading in moment.readings {
             let in_unit = match reading.kind {
                 SensorKind::Gyro => f64::to_degrees,
@@ -52,21 +75,56 @@ pub fn figures(plan: &Plan, end: SimTime) -> Vec<Figure> {
             let values = match reading.kind {
                 SensorKind::Baro => vec![reading.value.v.x, reading.truth.v.x],
                 SensorKind::Gps => [reading.value, reading.truth].map(|v| v.v.to_array()).concat(),
-                _ => table::reading(plan.axes, reading).values()[..6].to_vec(),
+                _ => table::reading(self.axes, reading).values()[..6].to_vec(),
             };
-            figures[reading.sensor].add(t, &values, in_unit);
+            self.put(reading.sensor, moment.t, &values, in_unit);
         }
-        Ok::<(), Infallible>(())
-    });
-    figures.push(angles);
-    figures
+    }
+
+    fn put(&mut self, figure: usize, t: SimTime, values: &[f64], in_unit: fn(f64) -> f64) {
+        let index = t.0 / self.width;
+        let lines = self.figures[figure].series.iter_mut().zip(&mut self.stretches[figure]);
+        for ((series, stretch), value) in lines.zip(values) {
+            if stretch.index != index {
+                stretch.flush(&mut series.points);
+                stretch.index = index;
+            }
+            stretch.add((t.seconds(), in_unit(*value)));
+        }
+    }
+
+    /// What was gathered.
+    pub fn done(mut self) -> Vec<Figure> {
+        for (figure, stretches) in self.figures.iter_mut().zip(&mut self.stretches) {
+            for (series, stretch) in figure.series.iter_mut().zip(stretches) {
+                stretch.flush(&mut series.points);
+            }
+        }
+        self.figures
+    }
 }
 
-impl Figure {
-    fn add(&mut self, t: f64, values: &[f64], in_unit: fn(f64) -> f64) {
-        for (series, value) in self.series.iter_mut().zip(values) {
-            series.points.push((t, in_unit(*value)));
+/// The points of one stretch of time that show: no more than four.
+#[derive(Clone, Debug, Default)]
+struct Stretch {
+    index: i64,
+    /// In order of time.
+    points: Vec<(f64, f64)>,
+}
+
+impl Stretch {
+    fn add(&mut self, point: (f64, f64)) {
+        self.points.push(point);
+        if self.points.len() > 4 {
+            let by = |&a: &usize, &b: &usize| self.points[a].1.total_cmp(&self.points[b].1);
+            let ends = [(0..5).min_by(by), (0..5).max_by(by)];
+            // Between the first and the last are three, and two of them at most are an end.
+            self.points.remove((1..4).find(|&i| !ends.contains(&Some(i))).unwrap_or(1));
         }
+    }
+
+    fn flush(&mut self, points: &mut Vec<(f64, f64)>) {
+        points.append(&mut self.points);
     }
 }
 

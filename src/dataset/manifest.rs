@@ -1,7 +1,7 @@
 //! `manifest.json`: what a program needs to know of a dataset without reading its numbers.
 
 use super::error::DatasetError;
-use super::folder::Folder;
+use super::folder::{Folder, Holds, MANIFEST, entries};
 use super::format::Written;
 use super::readme;
 use super::reference::Quality;
@@ -15,7 +15,7 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A file of numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -48,6 +48,7 @@ impl FileEntry {
 struct Manifest<'a> {
     program: &'static str,
     version: &'static str,
+    holds: &'static str,
     scene: &'a str,
     seed: u64,
     axes: String,
@@ -111,6 +112,7 @@ pub(super) fn text(
     let manifest = Manifest {
         program: env!("CARGO_PKG_NAME"),
         version: env!("CARGO_PKG_VERSION"),
+        holds: Holds::Dataset.name(),
         scene: &plan.name,
         seed: plan.seed,
         axes: plan.axes.to_string(),
@@ -178,9 +180,50 @@ pub(super) fn checksum(path: &Path) -> Result<String, DatasetError> {
     Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// The files that the manifest of an existing dataset lists: plain names in its own folder; none without one.
+#[derive(Serialize)]
+struct Plain<'a> {
+    program: &'static str,
+    version: &'static str,
+    holds: &'static str,
+    other_files: Vec<OtherEntry<'a>>,
+}
+
+/// The manifest of a folder without a scene: of the files in `workshop`, and of those that the manifest in `target`
+/// lists and that stay there.
+pub(super) fn of_files(workshop: &Path, target: &Path, holds: Holds) -> Result<String, DatasetError> {
+    let mut files: BTreeMap<String, PathBuf> = BTreeMap::new();
+    let there = files_of(target).into_iter().map(|name| (name.clone(), target.join(name)));
+    files.extend(there.filter(|(_, path)| path.is_file()));
+    for name in entries(workshop)? {
+        files.insert(name.to_string_lossy().into_owned(), workshop.join(name));
+    }
+    let entry = |(name, path): (&'_ String, &PathBuf)| Ok((name.clone(), checksum(path)?));
+    let sums: Vec<_> = files.iter().map(entry).collect::<Result<_, DatasetError>>()?;
+    let other_files = sums.iter().map(|(name, sha256)| OtherEntry { name, sha256: sha256.clone() }).collect();
+    let manifest = Plain {
+        program: env!("CARGO_PKG_NAME"),
+        version: env!("CARGO_PKG_VERSION"),
+        holds: holds.name(),
+        other_files,
+    };
+    let text = serde_json::to_string_pretty(&manifest).map_err(io::Error::other);
+    Ok(text.map_err(DatasetError::io("write", Path::new(MANIFEST)))? + "\n")
+}
+
+/// What the manifest of a folder of ours says it holds; nothing without a manifest of ours.
+pub(super) fn holds(folder: &Path) -> Option<String> {
+    let json = read_json(folder).filter(is_ours)?;
+    // Manifests of version 0.1.0 may lack it, and are all of datasets.
+    Some(json.get("holds").and_then(|name| name.as_str()).unwrap_or(Holds::Dataset.name()).to_string())
+}
+
+fn is_ours(json: &serde_json::Value) -> bool {
+    json.get("program").and_then(|name| name.as_str()) == Some(env!("CARGO_PKG_NAME"))
+}
+
+/// The files that the manifest of a folder of ours lists: plain names in its own folder; none without one.
 pub(super) fn files_of(folder: &Path) -> Vec<String> {
-    let json = read_json(folder).unwrap_or_default();
+    let json = read_json(folder).filter(is_ours).unwrap_or_default();
     let listed = ["files", "other_files"].into_iter().filter_map(|key| json.get(key)?.as_array());
     let names = listed.flatten().filter_map(|file| file.get("name")?.as_str());
     names.filter(|name| Path::new(name).file_name() == Some(name.as_ref())).map(String::from).collect()
@@ -188,5 +231,5 @@ pub(super) fn files_of(folder: &Path) -> Vec<String> {
 
 /// The manifest in a folder, if there is one and it is JSON.
 pub(super) fn read_json(folder: &Path) -> Option<serde_json::Value> {
-    serde_json::from_str(&std::fs::read_to_string(folder.join("manifest.json")).ok()?).ok()
+    serde_json::from_str(&std::fs::read_to_string(folder.join(MANIFEST)).ok()?).ok()
 }

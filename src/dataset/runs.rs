@@ -7,13 +7,14 @@
 use super::error::DatasetError;
 use super::folder::entries;
 use super::format::Format;
-use super::{Options, manifest, reference, write};
+use super::{Draw, Options, folder, manifest, reference, write};
 use crate::parallel;
 use crate::scene::{Plan, Runs, SweptValue};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,6 +32,11 @@ pub struct Shard {
 impl Shard {
     /// All of them.
     pub const WHOLE: Shard = Shard { index: 0, of: 1 };
+
+    /// How many of the first `runs` are its.
+    pub fn count(self, runs: u64) -> u64 {
+        runs.saturating_sub(self.index).div_ceil(self.of)
+    }
 
     /// Its runs among the first `runs`.
     pub fn indices(self, runs: u64) -> impl Iterator<Item = u64> {
@@ -64,9 +70,6 @@ pub struct Run {
     pub swept: Vec<SweptValue>,
 }
 
-/// Makes the further files of a run: a plain name and the contents of each.
-pub type Extra<'a> = &'a (dyn Fn(&Plan) -> Vec<(String, Vec<u8>)> + Sync);
-
 /// How runs are made.
 pub struct RunOptions<'a> {
     /// How many there are in all.
@@ -77,8 +80,8 @@ pub struct RunOptions<'a> {
     pub force: bool,
     /// In which formats.
     pub formats: Vec<&'static Format>,
-    /// Further files of a run, such as figures.
-    pub extra: Extra<'a>,
+    /// Makes files of a run's figures, where there are to be some.
+    pub draw: Option<Draw<'a>>,
     /// How many at a time.
     pub threads: usize,
     /// Told how many of how many are done.
@@ -146,6 +149,9 @@ fn prepare(dir: &Path, options: &RunOptions<'_>) -> Result<(), DatasetError> {
         return Err(DatasetError::NotAFolder { path: dir.into() });
     }
     fs::create_dir_all(dir).map_err(DatasetError::io("create", dir))?;
+    if !is_table_ours(dir) {
+        return Err(DatasetError::NotOurs { path: dir.into(), names: vec![TABLE.into()] });
+    }
     for name in entries(dir)? {
         let text = name.to_string_lossy();
         let ours = index_of(&name).is_some() || text == TABLE || text.starts_with('.');
@@ -153,13 +159,22 @@ fn prepare(dir: &Path, options: &RunOptions<'_>) -> Result<(), DatasetError> {
             return Err(DatasetError::Exists { path: dir.into() });
         }
         // What a run of this share left when its process was killed.
-        let hidden = text.strip_prefix('.').and_then(|text| text.split_once(super::folder::INCOMPLETE));
+        let hidden = text.strip_prefix('.').and_then(|text| text.split_once(folder::INCOMPLETE));
         let left = hidden.and_then(|(run, _)| index_of(OsStr::new(run)));
         if left.is_some_and(|index| index % options.shard.of == options.shard.index) {
+            if folder::is_being_filled(&dir.join(&name)) {
+                return Err(DatasetError::Busy { path: dir.into() });
+            }
             fs::remove_dir_all(dir.join(&name)).map_err(DatasetError::io("remove", &dir.join(&name)))?;
         }
     }
     Ok(())
+}
+
+/// Whether the table of runs may be replaced: there is none, or it begins as ours do.
+fn is_table_ours(dir: &Path) -> bool {
+    let begins = |text: String| text.starts_with("run,seed");
+    fs::read_to_string(dir.join(TABLE)).map_or_else(|error| error.kind() == ErrorKind::NotFound, begins)
 }
 
 /// Whether the run had to be made.
@@ -176,12 +191,11 @@ fn write_run(scene: &Runs, index: u64, dir: &Path, options: &RunOptions<'_>) -> 
             false => Err(DatasetError::OtherRun { path: folder }),
         };
     }
-    let extra = (options.extra)(&plan);
     let mut progress = |_| {};
     let dataset = Options {
         force: options.force,
         formats: options.formats.clone(),
-        extra: &extra,
+        draw: options.draw,
         stop: Some(options.stop),
         run: Some(&run),
         ..Options::new(&mut progress)

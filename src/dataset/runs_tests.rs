@@ -44,7 +44,7 @@ fn seven<'a>(progress: parallel::Progress<'a>, stop: &'a AtomicBool) -> RunOptio
         shard: Shard::WHOLE,
         force: false,
         formats: FORMATS[..2].to_vec(),
-        extra: &|_| Vec::new(),
+        draw: None,
         threads: 1,
         progress,
         stop,

@@ -318,13 +318,13 @@ fn a_folder_that_holds_something_is_refused_and_force_replaces_its_dataset_alone
     let (_home, out) = place();
     let (long, short) = (parsed(SEVERAL), parsed("duration = \"10 ms\"\n[mag]\nrate = \"1 kHz\"\n"));
     fs::create_dir(&out).unwrap();
-    may_write(&out, false).unwrap();
+    may_write(&out, false, Holds::Dataset, &[]).unwrap();
     let extra = [("gyro.svg".to_string(), b"<svg/>".to_vec())];
     write(&long, long.duration, &out, Options { extra: &extra, ..Options::new(&mut |_| {}) }).unwrap();
     assert_eq!(fs::read(out.join("gyro.svg")).unwrap(), b"<svg/>");
     let before = contents(&out);
     let refusal = write_to(&short, short.duration, &out, false).unwrap_err().to_string();
-    assert_eq!(may_write(&out, false).unwrap_err().to_string(), refusal);
+    assert_eq!(may_write(&out, false, Holds::Dataset, &[]).unwrap_err().to_string(), refusal);
     assert!(refusal.contains("already holds files") && refusal.contains("--force"), "{refusal}");
     assert!(contents(&out) == before);
 
@@ -478,10 +478,131 @@ fn what_cannot_be_read_is_placed() {
     assert!(read::truth(&home.path().join("none.csv")).unwrap_err().to_string().contains("none.csv"));
 }
 
+fn figures_of(plan: &Plan, end: SimTime) -> Vec<Figure> {
+    let mut figures = Figures::new(plan, end);
+    let Ok(()) = Player::new(plan, end, 64).play(|moment| {
+        figures.add(&moment);
+        Ok::<(), std::convert::Infallible>(())
+    });
+    figures.done()
+}
+
+/// A hundred thousand samples are more points than a picture has: what is left has the same outline.
+#[test]
+fn a_figure_of_a_long_scene_keeps_what_shows_and_no_more() {
+    let plan = parsed("seed = 2\nduration = \"50 s\"\n[gyro]\nrate = \"2 kHz\"\nnoise_std = \"1 deg/s\"\n");
+    let line = |end| figures_of(&plan, end)[0].series[0].points.clone();
+    let mut all = Vec::new();
+    let Ok(()) = Player::new(&plan, plan.duration, 256).play(|moment| {
+        let gyro = moment.readings.iter().map(|it| (moment.t.seconds(), it.value.v.x.to_degrees()));
+        all.extend(gyro);
+        Ok::<(), std::convert::Infallible>(())
+    });
+    let kept = line(plan.duration);
+    assert_eq!(all.len(), 100_000);
+    assert!((2000..=8000).contains(&kept.len()), "{}", kept.len());
+    assert!(kept.is_sorted_by(|a, b| a.0 < b.0));
+    // Of each hundredth of the time, the least and the greatest of all are there.
+    for part in 0..100 {
+        let within = |point: &&(f64, f64)| (point.0 / 0.5) as usize == part;
+        let ends = |points: &[(f64, f64)]| {
+            let values = || points.iter().filter(within).map(|point| point.1);
+            (values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max))
+        };
+        assert_eq!(ends(&kept), ends(&all), "{part}");
+    }
+    // A scene with fewer samples than that keeps each.
+    assert_eq!(line(SimTime(4 * NANOS)), all[..8000]);
+}
+
+#[test]
+fn force_replaces_what_a_manifest_lists_and_refuses_the_rest_by_name() {
+    let plan = parsed("duration = \"10 ms\"\n[mag]\nrate = \"1 kHz\"\n");
+    let (_home, out) = place();
+    fs::create_dir(&out).unwrap();
+    for name in ["scene.toml", "README.md", "notes.txt"] {
+        fs::write(out.join(name), "mine").unwrap();
+    }
+    let before = contents(&out);
+    let refused = write_to(&plan, plan.duration, &out, true).unwrap_err();
+    let DatasetError::NotOurs { names, .. } = &refused else { panic!("{refused}") };
+    assert_eq!(names, &["README.md", "scene.toml"]);
+    assert!(contents(&out) == before);
+    // A manifest of somebody else's lists nothing of ours, whatever it says.
+    let other =
+        r#"{"program": "else", "files": [{"name": "scene.toml"}], "other_files": [{"name": "README.md"}]}"#;
+    fs::write(out.join("manifest.json"), other).unwrap();
+    let refused = write_to(&plan, plan.duration, &out, true).unwrap_err();
+    let DatasetError::NotOurs { names, .. } = &refused else { panic!("{refused}") };
+    assert_eq!(names, &["README.md", "manifest.json", "scene.toml"]);
+    // Out of the way, the rest is nobody's business.
+    for name in ["scene.toml", "README.md", "manifest.json"] {
+        fs::remove_file(out.join(name)).unwrap();
+    }
+    for _ in 0..2 {
+        write_to(&plan, plan.duration, &out, true).unwrap();
+        assert_eq!(fs::read(out.join("notes.txt")).unwrap(), b"mine");
+    }
+    // What comes into the way while the files are made is seen as well.
+    let later = Folder::open(&out, true, Holds::Dataset).unwrap();
+    later.put("notes.txt", b"ours").unwrap();
+    assert!(matches!(later.commit(), Err(DatasetError::NotOurs { .. })));
+    assert_eq!(fs::read(out.join("notes.txt")).unwrap(), b"mine");
+    assert!(out.join("manifest.json").exists() && out.join("mag.csv").exists());
+}
+
+#[test]
+fn results_of_one_kind_never_take_the_place_of_anothers() {
+    let plan = parsed("duration = \"10 ms\"\n[mag]\nrate = \"1 kHz\"\n");
+    let (home, out) = place();
+    write_to(&plan, plan.duration, &out, false).unwrap();
+    let before = contents(&out);
+    let files = [("report.json", b"{}".to_vec())];
+    let refused = put_all(&out, true, Holds::Score, &files).unwrap_err().to_string();
+    assert!(refused.contains("holds a dataset") && contents(&out) == before, "{refused}");
+    // A study adds to an earlier one, and what it adds is its own.
+    let study = home.path().join("study");
+    put_all(&study, false, Holds::Study, &[("cost.csv", b"1".to_vec())]).unwrap();
+    assert!(put_all(&study, false, Holds::Study, &[("cost.csv", b"2".to_vec())]).is_err());
+    put_all(&study, true, Holds::Study, &[("allan.csv", b"3".to_vec())]).unwrap();
+    put_all(&study, true, Holds::Study, &[("cost.csv", b"4".to_vec())]).unwrap();
+    let now = contents(&study);
+    assert_eq!(now.keys().collect::<Vec<_>>(), ["allan.csv", "cost.csv", "manifest.json"]);
+    assert_eq!((&now["allan.csv"][..], &now["cost.csv"][..]), (&b"3"[..], &b"4"[..]));
+    let manifest: serde_json::Value = serde_json::from_slice(&now["manifest.json"]).unwrap();
+    assert_eq!(manifest["holds"], "study");
+    assert_eq!(manifest["other_files"][1]["sha256"], sha256(b"4"));
+    assert!(write_to(&plan, plan.duration, &study, true).is_err());
+}
+
+#[test]
+fn of_two_that_write_one_folder_one_is_refused() {
+    let (home, out) = place();
+    let first = Folder::open(&out, false, Holds::Dataset).unwrap();
+    first.put("a", b"first").unwrap();
+    let busy = Folder::open(&out, true, Holds::Dataset).err().map(|error| error.to_string());
+    assert!(busy.is_some_and(|why| why.contains("another process")));
+    // One beside it is another folder.
+    Folder::open(&home.path().join("beside"), false, Holds::Dataset).unwrap();
+    first.commit().unwrap();
+    assert_eq!(fs::read(out.join("a")).unwrap(), b"first");
+    // One that another has made meanwhile is left as it is.
+    let other = home.path().join("other");
+    let late = Folder::open(&other, false, Holds::Dataset).unwrap();
+    late.put("a", b"late").unwrap();
+    fs::create_dir(&other).unwrap();
+    fs::write(other.join("a"), "there").unwrap();
+    assert!(matches!(late.commit(), Err(DatasetError::Appeared { .. })));
+    assert_eq!(fs::read(other.join("a")).unwrap(), b"there");
+    let mut left: Vec<_> = fs::read_dir(home.path()).unwrap().map(|it| it.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["other", out.file_name().unwrap().to_str().unwrap()].map(std::ffi::OsString::from));
+}
+
 #[test]
 fn the_figures_are_the_papers_four() {
     let plan = plan("table-1", &[]);
-    let figures = figures(&plan, SimTime(3 * NANOS));
+    let figures = figures_of(&plan, SimTime(3 * NANOS));
     let stems: Vec<_> =
         figures.iter().map(|figure| (figure.file_stem, figure.series.len(), figure.wraps)).collect();
     assert_eq!(stems, [("gyro", 6, false), ("accel", 6, false), ("mag", 6, false), ("angles", 3, true)]);
@@ -610,8 +731,8 @@ fn a_scene_without_a_reference_has_none_and_one_beyond_numbers_says_why() {
     let files = contents(&out);
     assert!(!files.contains_key("reference.csv"));
     assert!(!String::from_utf8_lossy(&files["manifest.json"]).contains("\"reference\""));
-    let text = FAST.replace("2000, 0, 0] deg", "1e9, 0, 0] rad");
-    let (wild, (_home, out)) = (parsed(&text), place());
+    let text = "[[motion]]\nkind = \"rotate\"\nroll = \"1e6 deg/s\"\nduration = \"100 s\"\n[gyro]\nrate = \"1 Hz\"\n[reference]\nmethod = \"paper\"\n";
+    let (wild, (_home, out)) = (parsed(text), place());
     let refused = write_to(&wild, wild.duration, &out, false).unwrap_err().to_string();
     assert!(refused.contains("reference.csv cannot be computed: `paper` at"), "{refused}");
     assert!(!out.exists());
@@ -712,7 +833,7 @@ fn an_aids_tables_have_what_it_reads_beside_what_is_true() {
     let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
     assert_eq!(manifest["sensors"][2]["name"], "gps");
     assert_eq!(manifest["sensors"][1]["samples"], 200);
-    let figures = figures(&plan, plan.duration);
+    let figures = figures_of(&plan, plan.duration);
     let lines: Vec<_> = figures.iter().map(|figure| (figure.file_stem, figure.series.len())).collect();
     assert_eq!(lines, [("gyro", 6), ("baro", 2), ("gps", 6), ("angles", 3)]);
 }

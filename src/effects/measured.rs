@@ -1,5 +1,6 @@
 //! The size of an error term that has no entry of its own: what the sensor reads with it and without.
 
+use super::survey::most as ticks_of;
 use super::terms::key;
 use super::{EFFECTS, Found, Survey, TICKS};
 use crate::player::Feed;
@@ -32,7 +33,7 @@ pub(super) fn measure(survey: &Survey<'_>, term: &str) -> Option<Found> {
     };
     let statistic = match survey.ticks {
         0..=TICKS => "largest, measured",
-        _ => "largest, measured over the first 20 000 samples",
+        _ => "largest, measured over the first 20 000 samples or fewer",
     };
     let size = DVec3::new(most(0), most(1), most(2));
     Some(Found { key: key(survey, term), ..Found::modelled(size, statistic) })
@@ -43,7 +44,7 @@ fn error_free(survey: &Survey<'_>, sensor: &Sensor) -> Block {
     let (plan, path) = (survey.sensor, survey.trajectory());
     let (mut block, mut feed) =
         (Block::default(), Feed::new(plan, survey.plan.origin(), survey.plan.seed, sensor));
-    for k in 0..survey.ticks.min(TICKS) {
+    for k in 0..survey.ticks.min(ticks_of(survey.plan, plan)) {
         let t = plan.phase + plan.clock().tick(k);
         feed.push(t, &path.at(t), path, &mut block);
     }

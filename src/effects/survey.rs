@@ -14,6 +14,13 @@ use glam::DVec3;
 /// About how many ticks of a sensor are looked at: a scene with more is looked at evenly, and at every seam.
 pub const TICKS: u64 = 20_000;
 
+/// How many ticks of a sensor are looked at: fewer where the vehicle turns by many radians from one to the next, for
+/// then a mean over that time takes as many steps.
+pub(super) fn most(plan: &Plan, sensor: &SensorPlan) -> u64 {
+    let steps = (plan.trajectory.fastest() * sensor.rate.period()).max(1.0);
+    ((TICKS as f64 / steps) as u64).clamp(50, TICKS)
+}
+
 /// One tick that is looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
@@ -47,12 +54,13 @@ impl<'a> Survey<'a> {
     pub fn new(plan: &'a Plan, sensor: &'a SensorPlan) -> Survey<'a> {
         let before = |end| sensor.clock().ticks_before(sensor.phase, end);
         let ticks = before(plan.duration);
-        let mut chosen: Vec<u64> = (0..ticks).step_by(ticks.div_ceil(TICKS).max(1) as usize).collect();
+        let most = most(plan, sensor);
+        let mut chosen: Vec<u64> = (0..ticks).step_by(ticks.div_ceil(most).max(1) as usize).collect();
         // The last tick before a seam, and the first at or after it.
         let mut edges: Vec<_> = plan.trajectory.edges().collect();
         edges.sort_unstable();
         // A recorded log has a seam at each of its rows.
-        let thin = edges.len().div_ceil(TICKS as usize).max(1);
+        let thin = edges.len().div_ceil(most as usize).max(1);
         let edges: Vec<_> = edges.into_iter().step_by(thin).collect();
         let seams = edges.iter().copied().chain([plan.duration]).map(before);
         chosen.extend(seams.flat_map(|k| [k.saturating_sub(1), k]).filter(|&k| k < ticks));

@@ -2,11 +2,11 @@
 
 use super::{Event, Heard, Job, ListenError, Meter, Progress};
 use crate::clock::{Clock, WallClock};
+use crate::interrupt::Interrupt;
 use crate::link::{Address, Link, LinkError, Receiver, Sender};
 use crate::wire::{Protocol, samples};
 use bytes::BytesMut;
 use std::time::Duration;
-use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
 /// Between two reports of progress.
@@ -23,7 +23,9 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
     let runtime =
         runtime.map_err(|source| ListenError::System { doing: "start the listening loop", source })?;
     runtime.block_on(async {
-        let mut signals = Signals::new()?;
+        let signals = Interrupt::listen();
+        let mut signals =
+            signals.map_err(|source| ListenError::System { doing: "listen for Ctrl-C", source })?;
         let mut link = Link::listen(&job.address).await?;
         link.notices().iter().for_each(|notice| on(Event::Notice(notice.clone())));
         let name = link.name().to_string();
@@ -44,20 +46,6 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
     })
 }
 
-struct Signals(Signal, Signal);
-
-impl Signals {
-    fn new() -> Result<Signals, ListenError> {
-        let on =
-            |kind| signal(kind).map_err(|source| ListenError::System { doing: "listen for Ctrl-C", source });
-        Ok(Signals(on(SignalKind::interrupt())?, on(SignalKind::terminate())?))
-    }
-
-    async fn recv(&mut self) {
-        tokio::select! { _ = self.0.recv() => {}, _ = self.1.recv() => {} }
-    }
-}
-
 struct Ear<'a> {
     job: &'a Job,
     name: String,
@@ -72,7 +60,7 @@ struct Ear<'a> {
 impl Ear<'_> {
     async fn hear(
         mut self,
-        signals: &mut Signals,
+        signals: &mut Interrupt,
         on: &mut dyn FnMut(Event<'_>),
     ) -> Result<Heard, ListenError> {
         let start = Instant::now();

@@ -48,6 +48,7 @@ pub(super) struct Cone {
     frequency: f64,
     /// The scene's y and z against ours.
     sign: f64,
+    warnings: Vec<String>,
 }
 
 impl Cone {
@@ -58,6 +59,7 @@ impl Cone {
             turns: frequency,
             frequency: TAU * frequency.to_f64(),
             sign,
+            warnings: other_cone(half_angle.to_f64()).into_iter().collect(),
         }
     }
 
@@ -67,7 +69,30 @@ impl Cone {
     }
 }
 
+/// What an angle beyond half a turn comes to.
+fn other_cone(half_angle: f64) -> Option<String> {
+    let (given, rest) = (half_angle.abs().to_degrees(), half_angle.abs() % TAU);
+    let same = rest.min(TAU - rest).to_degrees();
+    // Beyond rounding: 180 deg itself is a cone.
+    (given > 180.0 + 1e-9).then(|| {
+        format!(
+            "a `cone` with a half_angle of {} deg is one of {} deg: a half-angle is from 0 to 180 deg",
+            tidy(given),
+            tidy(same)
+        )
+    })
+}
+
+/// Degrees without the rounding of radians.
+fn tidy(degrees: f64) -> f64 {
+    libm::round(degrees * 1e9) / 1e9
+}
+
 impl Motion for Cone {
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
     fn at(&self, start: Attitude, t: Double) -> Kinematics {
         let (sine, cosine) = (self.turns * t * Double::TAU).sin_cos();
         let (s, _) = self.half;

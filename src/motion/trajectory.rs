@@ -100,6 +100,17 @@ impl Trajectory {
         self.segments.last().map_or(SimTime::ZERO, |last| last.start)
     }
 
+    /// A bound on how fast anything changes in any of the motions, rad/s.
+    pub fn fastest(&self) -> f64 {
+        self.segments.iter().map(|segment| segment.motion.fastest()).fold(0.0, f64::max)
+    }
+
+    /// When each motion begins, in order.
+    pub fn starts(&self) -> impl Iterator<Item = SimTime> + '_ {
+        let moving = self.segments.len() - 1;
+        self.segments.iter().take(moving).map(|segment| segment.start)
+    }
+
     /// The acceleration of free fall, m/s².
     pub fn gravity(&self) -> Vector<Nav> {
         self.gravity

@@ -29,6 +29,11 @@ pub struct OutputFault {
 }
 
 impl OutputFault {
+    /// When it begins.
+    pub fn start(&self) -> SimTime {
+        self.fault.start
+    }
+
     /// Whether it concerns the output, the `index`-th of a run.
     pub fn concerns(&self, index: usize, output: &Output) -> bool {
         let here = match &self.on {

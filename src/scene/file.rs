@@ -68,6 +68,7 @@ impl Section<'_> {
         let extension = path.extension().map_or(String::new(), |text| format!(".{}", text.to_string_lossy()));
         let attached = Attached { name: self.path.replace('.', "-") + &extension, path, stamp };
         self.resolve(key, attached.name.clone());
+        self.reader.files.borrow_mut().push(attached.path.clone());
         self.reader.attached.borrow_mut().push(attached);
         Some(Text { name, contents })
     }

@@ -65,6 +65,7 @@ fn read(section: &Section<'_>, kind: SensorKind) -> Result<Table, Vec<String>> {
     let one = |message: String| vec![message];
     let keys = keys(kind).ok_or_else(|| one(format!("{shown}: a Kalibr file has no {kind}")))?;
     let text = fs::read_to_string(&path).map_err(|error| one(format!("cannot read {shown}: {error}")))?;
+    section.reader.files.borrow_mut().push(path.clone());
     let documents =
         MarkedYaml::load_from_str(&text).map_err(|error| one(format!("{shown} is no YAML: {error}")))?;
     // The file that Kalibr writes has all of it under `imu0`.

@@ -18,6 +18,8 @@ pub struct Reader {
     mistakes: RefCell<Vec<Mistake>>,
     pub(super) draws: RefCell<Vec<Drawn>>,
     pub(super) attached: RefCell<Vec<Attached>>,
+    /// Files that were read for it.
+    pub(super) files: RefCell<Vec<PathBuf>>,
     warnings: RefCell<Vec<String>>,
 }
 
@@ -25,8 +27,10 @@ pub struct Reader {
 pub struct Found {
     /// Values drawn once for this run.
     pub drawn: Vec<Drawn>,
-    /// Files that were read.
+    /// Files that the scene as resolved names.
     pub attached: Vec<Attached>,
+    /// Files that were read.
+    pub files: Vec<PathBuf>,
     /// What a user should know.
     pub warnings: Vec<String>,
 }
@@ -41,6 +45,7 @@ impl Reader {
             mistakes: RefCell::default(),
             draws: RefCell::default(),
             attached: RefCell::default(),
+            files: RefCell::default(),
             warnings: RefCell::default(),
         }
     }
@@ -74,6 +79,7 @@ impl Reader {
         Ok(Found {
             drawn: self.draws.into_inner(),
             attached: self.attached.into_inner(),
+            files: self.files.into_inner(),
             warnings: self.warnings.into_inner(),
         })
     }

@@ -30,6 +30,7 @@ impl Plan {
             output_faults: Vec::new(),
             drawn: self.drawn.clone(),
             attached: Vec::new(),
+            files: Vec::new(),
             warnings: Vec::new(),
             resolved: String::new(),
         }

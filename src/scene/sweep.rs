@@ -87,7 +87,7 @@ impl Runs {
 
     /// How many combinations the lists have; 1 without any.
     pub fn combinations(&self) -> u64 {
-        self.swept.iter().map(|swept| swept.takes.length()).product()
+        combinations(&self.swept).unwrap_or_else(|| unreachable!("counted when read"))
     }
 
     /// The seed of run `index`, and the values of its swept keys. Beyond the last combination the lists begin again.
@@ -203,7 +203,20 @@ fn read(sweep: &Entry) -> Result<Vec<Swept>, Vec<Mistake>> {
             Err(message) => mistakes.push(Mistake { place: node.place.clone(), message }),
         }
     }
+    if mistakes.is_empty() && combinations(&swept).is_none() {
+        let factors: Vec<_> = swept.iter().map(|swept| swept.takes.length().to_string()).collect();
+        let message = format!(
+            "the lists have {} combinations, more than can be counted in 64 bits: sweep fewer keys, or draw some of them, {{ uniform = [low, high] }}",
+            factors.join(" x ")
+        );
+        mistakes.push(Mistake { place: sweep.node.place.clone(), message });
+    }
     if mistakes.is_empty() { Ok(swept) } else { Err(mistakes) }
+}
+
+/// How many combinations the lists have; nothing beyond the range of numbers.
+fn combinations(swept: &[Swept]) -> Option<u64> {
+    swept.iter().try_fold(1, |all: u64, swept| all.checked_mul(swept.takes.length()))
 }
 
 /// Keys by their dotted paths: `"gyro.rate" = […]` and `gyro.rate = […]`, which TOML takes for a table, are one thing.
@@ -329,6 +342,21 @@ mod tests {
         assert!((0..20).all(|i| draw(&one, i) == draw(&two, i)), "another key changes no drawn value");
     }
 
+    /// So many lists of so many values.
+    fn too_many(lists: usize, length: usize) -> String {
+        let values = vec!["\"1 deg/s\""; length].join(", ");
+        (0..lists).map(|i| format!("\"gyro.key_{i}\" = [{values}]\n")).collect()
+    }
+
+    #[test]
+    fn as_many_combinations_as_can_be_counted_are_read() {
+        let lists = too_many(63, 2);
+        let document = format!("[sweep]\n{lists}");
+        let table = Table::parse(&document, "test").unwrap();
+        let swept = read(table.get("sweep").unwrap()).unwrap();
+        assert_eq!(combinations(&swept), Some(1 << 63));
+    }
+
     #[test]
     fn every_mistake_says_where_and_what_would_be_right() {
         for (sweep, place, says) in [
@@ -339,6 +367,8 @@ mod tests {
             ("\"gyro.nois_std\" = [\"1 deg/s\"]\n", "test:6:20", "noise_std"),
             ("gyro.noise_std = { normal = [\"1 deg/s\", \"2 deg/s\"] }\n", "test:6:18", "uniform"),
             ("seed = [1, 2]\n", "test:6:8", "cannot be swept"),
+            (&too_many(64, 2), "test:5:1", "2 x 2 x"),
+            (&too_many(16, 16), "test:5:1", "64 bits"),
         ] {
             let said = runs(sweep).unwrap_err().to_string();
             assert!(said.contains(says) && said.contains(&place[..6]), "{sweep}{said}");

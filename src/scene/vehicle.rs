@@ -229,6 +229,11 @@ fn motion(
         axes: section.axes(),
     };
     match (kind.build)(&values, &context) {
+        // A log has the rates that it has.
+        Ok(motion) if !kind.has_length && too_fast(&*motion).is_some() => {
+            section.mistake("kind", too_fast(&*motion).unwrap_or_default());
+            None
+        }
         Ok(motion) => {
             let own = || {
                 let length = motion.length().filter(|_| !section.has("duration"))?;
@@ -242,6 +247,21 @@ fn motion(
             None
         }
     }
+}
+
+/// The fastest that a motion may turn, or what it turns by may change: a million degrees a second. A mean over an
+/// interval takes a step for every radian.
+const FASTEST: f64 = 1e6 * PI / 180.0;
+
+/// What is wrong with a motion that no body makes and no machine averages.
+fn too_fast(motion: &dyn Motion) -> Option<String> {
+    let fastest = motion.fastest();
+    // Written so that what is not a number is refused too.
+    let bounded = fastest <= FASTEST * (1.0 + 1e-9);
+    (!bounded).then(|| {
+        let degrees = fastest.to_degrees();
+        format!("this motion turns, or its rate changes, at {degrees:.3e} deg/s, and 1e6 deg/s is the most: a unit may be wrong, or a digit too many")
+    })
 }
 
 /// What a user should know whose vehicle comes to a motion at another velocity than that means.

@@ -43,8 +43,6 @@ const RIVALS: usize = 64;
 pub(super) struct Match {
     /// How much the estimate's clock is ahead of the truth's, ns.
     pub offset: i64,
-    /// A cell of the grid, ns.
-    pub cell: i64,
     /// Where it lies for all that the grid shows, ns.
     pub within: Range<i64>,
     /// Whether the body's axes had to be turned.
@@ -157,7 +155,7 @@ fn of_sums(sums: &Sums, truth: &Rates, estimate: &Rates, free: bool) -> Option<M
     let offset = |i: usize| sums.ahead(i) * step;
     let within = offset(lobe.start) - 2 * step..offset(lobe.end - 1) + 2 * step;
     let rivals = rivals.into_iter().map(offset).collect();
-    Some(Match { offset: offset(best), cell: step, within, free, alike: here, rivals, doubt })
+    Some(Match { offset: offset(best), within, free, alike: here, rivals, doubt })
 }
 
 /// Overlaps of fewer cells are not looked at.

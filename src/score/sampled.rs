@@ -1,7 +1,7 @@
 //! The truth on an even grid: for a search that looks at it a million times.
 
 use super::judge::Truth;
-use crate::geometry::{angle_between, log};
+use crate::geometry::log;
 use crate::time::SimTime;
 use glam::DQuat;
 
@@ -53,11 +53,5 @@ impl Sampled {
         let pairs = self.points.windows(2).filter_map(|pair| Some((pair[0]?, pair[1]?)));
         let fastest = pairs.map(|(a, b)| log(a.conjugate() * b).length()).fold(0.0, f64::max);
         fastest / (self.step as f64 * 1e-9)
-    }
-
-    /// Whether it never turns, but for a thousandth of a rad.
-    pub fn is_still(&self) -> bool {
-        let mut known = self.points.iter().flatten();
-        known.next().is_some_and(|first| known.all(|q| angle_between(*first, *q) < 1e-3))
     }
 }

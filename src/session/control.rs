@@ -11,6 +11,7 @@ use super::talk::Talk;
 use super::watch::Watching;
 use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command, ears};
 use crate::clock::{Clock, Policy, Precise, WallClock};
+use crate::interrupt::Interrupt;
 use crate::link::{Link, Sender};
 use crate::time::SimTime;
 use std::cell::RefCell;
@@ -20,7 +21,6 @@ use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use tokio::process::Child;
-use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::oneshot;
 use tokio::time::Instant;
 
@@ -90,20 +90,6 @@ impl Absence {
     }
 }
 
-pub(super) struct Signals(Signal, Signal);
-
-impl Signals {
-    fn new() -> Result<Signals, SessionError> {
-        let on =
-            |kind| signal(kind).map_err(|source| SessionError::System { doing: "listen for Ctrl-C", source });
-        Ok(Signals(on(SignalKind::interrupt())?, on(SignalKind::terminate())?))
-    }
-
-    pub(super) async fn recv(&mut self) {
-        tokio::select! { _ = self.0.recv() => {}, _ = self.1.recv() => {} }
-    }
-}
-
 /// The command, if there is one; without one, its end never comes.
 pub(super) struct Program(pub Option<Child>);
 
@@ -143,7 +129,9 @@ impl Run {
     }
 
     async fn go(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
-        let mut signals = Signals::new()?;
+        let signals = Interrupt::listen();
+        let mut signals =
+            signals.map_err(|source| SessionError::System { doing: "listen for Ctrl-C", source })?;
         let mut links = Vec::new();
         for output in &job.outputs {
             links.push(Link::open(&output.to.address).await?);
@@ -269,7 +257,7 @@ impl Run {
         on: &mut dyn FnMut(Event<'_>),
         links: &[Link],
         names: &[String],
-        signals: &mut Signals,
+        signals: &mut Interrupt,
         program: &mut Program,
         notices: &mut oneshot::Receiver<Option<String>>,
         done: &mut oneshot::Receiver<()>,

@@ -1,8 +1,9 @@
 //! Before the stream: until somebody is on every link, and until every controller has been heard.
 
-use super::control::{Program, Run, Signals, TICK};
+use super::control::{Program, Run, TICK};
 use super::{Event, SessionError};
 use crate::clock::Clock;
+use crate::interrupt::Interrupt;
 use crate::link::Link;
 use tokio::time::Instant;
 
@@ -18,7 +19,7 @@ impl Run {
     pub(super) async fn wait_for_peers(
         &mut self,
         links: &mut [Link],
-        signals: &mut Signals,
+        signals: &mut Interrupt,
         program: &mut Program,
     ) -> Result<bool, SessionError> {
         if self.job.wait.is_zero() {
@@ -54,7 +55,7 @@ impl Run {
         &mut self,
         on: &mut dyn FnMut(Event<'_>),
         names: &[String],
-        signals: &mut Signals,
+        signals: &mut Interrupt,
         program: &mut Program,
     ) -> Result<bool, SessionError> {
         let waited = self.job.wait;

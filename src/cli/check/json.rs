@@ -1,6 +1,7 @@
 //! The plan for a program.
 
 use super::{budgets, noise, terms, warnings};
+use crate::dataset::Bounds;
 use crate::earth;
 use crate::effects::effects;
 use crate::motion::method::Choice;
@@ -46,6 +47,7 @@ pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
         "seed": plan.seed,
         "duration_s": plan.duration.seconds(),
         "moving_until_s": plan.trajectory.moving_until().min(plan.duration).seconds(),
+        "bounds": Bounds::of(plan, plan.duration),
         "axes": plan.axes.to_string(),
         "earth": {
             "gravity_m_s2": plan.trajectory.gravity().length(),

@@ -2,11 +2,14 @@
 
 use super::charts::{self, Drawn};
 use super::sources::Truth;
-use crate::dataset::{DatasetError, Folder, Sink};
+use crate::dataset::{DatasetError, Folder, Holds, Sink};
 use crate::report::ScoreReport;
 use crate::score::{self, Judged};
 use std::fmt::Write;
 use std::path::Path;
+
+/// The files of the folder.
+pub(super) const FILES: [&str; 4] = ["report.json", "errors.csv", "attitude.svg", "error.svg"];
 
 /// The folder being written.
 pub(super) struct Book {
@@ -18,8 +21,8 @@ pub(super) struct Book {
 impl Book {
     /// Begins a folder.
     pub fn open(dir: &Path, force: bool) -> Result<Book, DatasetError> {
-        let folder = Folder::open(dir, force)?;
-        let mut errors = folder.file("errors.csv")?;
+        let folder = Folder::open(dir, force, Holds::Score)?;
+        let mut errors = folder.file(FILES[1])?;
         errors.put(b"estimate,t_ns,error_deg,inclination_deg,heading_deg\n")?;
         Ok(Book { folder, errors, drawn: Vec::new() })
     }
@@ -46,9 +49,10 @@ impl Book {
     /// Adds report and charts and shows the folder.
     pub fn close(self, report: &ScoreReport, truth: &Truth, json: &str) -> Result<(), DatasetError> {
         self.errors.close()?;
-        self.folder.put("report.json", json.as_bytes())?;
-        self.folder.put("attitude.svg", charts::attitude(report, &self.drawn, truth).as_bytes())?;
-        self.folder.put("error.svg", charts::error(report, &self.drawn).as_bytes())?;
-        self.folder.commit()
+        let [json_name, _, attitude, error] = FILES;
+        self.folder.put(json_name, json.as_bytes())?;
+        self.folder.put(attitude, charts::attitude(report, &self.drawn, truth).as_bytes())?;
+        self.folder.put(error, charts::error(report, &self.drawn).as_bytes())?;
+        self.folder.commit_with_manifest()
     }
 }

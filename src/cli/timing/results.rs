@@ -1,6 +1,7 @@
 //! From what was measured to the report, as JSON and as a person reads it.
 
-use super::{Measured, Refusal, run};
+use super::run::{self, Ended};
+use super::{Measured, Refusal};
 use crate::report::{Baseline, Late, Limit, SensorReport, SensorTiming, Spread, TimingReport, number, table};
 use crate::scene::{Output, Plan};
 use crate::session::Speed;
@@ -65,8 +66,8 @@ pub fn fill(report: &mut TimingReport, measured: &Measured) {
 }
 
 /// Losses at either end, and broken limits.
-pub fn judge(report: &mut TimingReport, limits: &[Limit]) -> Result<(), Refusal> {
-    run::judge(&mut report.run, &[], None, false)?;
+pub fn judge(report: &mut TimingReport, limits: &[Limit], interrupted: bool) -> Result<(), Refusal> {
+    run::judge(&mut report.run, &[], &Ended { interrupted, ..Ended::default() })?;
     let missed = report.run.sensors.iter().filter_map(|sensor| {
         let missed = sensor.timing?.missed?;
         // What was dropped is told already.
@@ -117,7 +118,7 @@ fn sensors(report: &TimingReport) -> String {
         let mut row = vec![sensor.name.clone(), number(sensor.rate_hz)];
         row.extend(rate(sensor.sent_hz, timing.sent_ppm));
         row.extend(rate(sensor.received_hz, timing.received_ppm));
-        row.extend([sensor.made, sensor.sent, sensor.dropped].map(|n| n.to_string()));
+        row.extend([sensor.made, sensor.sent, sensor.dropped, sensor.queued].map(|n| n.to_string()));
         row.extend([count(timing.missed), timing.overdue.to_string()]);
         row
     };
@@ -131,6 +132,7 @@ fn sensors(report: &TimingReport) -> String {
         "made",
         "sent",
         "dropped",
+        "queued",
         "missed",
         "overdue",
     ];

@@ -15,6 +15,8 @@ const LONGEST: u32 = 10;
 const SHORTEST: u32 = 4;
 /// Fewer steps than this say nothing about a method.
 const FEWEST_STEPS: u64 = 8;
+/// The most readings over which methods are compared, half a minute or so: 14 hours at 1 kHz.
+const MOST_STEPS: u64 = 50_000_000;
 
 /// What was chosen, and why.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +82,18 @@ pub enum ToleranceError {
         /// The finest tried.
         fastest: Rate,
     },
+    /// The scene lasts longer than is tried.
+    #[error(
+        "to choose a method compares many over all of {end} at {rate}, {ticks} steps each, and {MOST_STEPS} is the most: name a `method`, or play shorter"
+    )]
+    TooLong {
+        /// The end of the scene.
+        end: SimTime,
+        /// The rate of the readings.
+        rate: Rate,
+        /// The readings.
+        ticks: u64,
+    },
     /// The scene ends before a method shows its error.
     #[error("in {end} no method makes {FEWEST_STEPS} steps: name a method, or play longer")]
     TooShort {
@@ -94,13 +108,17 @@ pub enum ToleranceError {
 /// The same must hold with steps half as long: a step as long as an oscillation's period meets the truth by chance.
 ///
 /// # Errors
-/// None of them does, or `end` comes before eight steps of any.
+/// None of them does, it takes longer than a scene is checked for, or `end` comes before eight steps of any.
 pub fn choose(
     trajectory: &Trajectory,
     rate: Rate,
     end: SimTime,
     tolerance_deg: f64,
 ) -> Result<Choice, ToleranceError> {
+    let ticks = rate.ticks_before(SimTime::ZERO, end);
+    if ticks > MOST_STEPS {
+        return Err(ToleranceError::TooLong { end, rate, ticks });
+    }
     let candidates = candidates(rate, end);
     if candidates.is_empty() {
         return Err(ToleranceError::TooShort { end });
