@@ -1,0 +1,426 @@
+//! The rows of a table, one at a time, and all of them in order.
+
+use super::cells::{self, Cell};
+use super::choice::{Attitudes, Choice, Clock, Columns};
+use super::error::{Mistake, Mistakes, TableError};
+use super::head;
+use super::kinds::Kind;
+use super::left_out::{Reason, Rows};
+use super::lines::{Lines, Numbered};
+use super::names::{self, Set, TimeColumn};
+use super::order::{self, Fate};
+use super::times::{TICKS, Times, decimal};
+use std::collections::VecDeque;
+use std::io::{self, BufRead};
+use std::ops::Range;
+
+/// As many lines are looked at for a header.
+const LOOK: usize = 256;
+/// As many comments above the header are kept.
+const COMMENTS: usize = 64;
+
+/// A table whose header is read and whose rows are not.
+#[derive(Debug)]
+pub struct Table<R> {
+    columns: Columns,
+    delimiter: u8,
+    /// Whether a comma stands for the decimal point.
+    comma: bool,
+    /// Rows that were read to find the header.
+    held: VecDeque<Numbered>,
+    lines: Lines<R>,
+    line: Numbered,
+    cells: Vec<Range<usize>>,
+}
+
+/// What is wanted of each row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted<const N: usize> {
+    /// When it is.
+    pub clock: Clock,
+    /// The columns of its values.
+    pub columns: [usize; N],
+    /// Columns that are not used, of which it is told whether anything changes in them.
+    pub watched: Vec<usize>,
+}
+
+impl<const N: usize> Wanted<N> {
+    /// Time and values alone.
+    pub fn new(clock: Clock, columns: [usize; N]) -> Wanted<N> {
+        Wanted { clock, columns, watched: Vec::new() }
+    }
+}
+
+/// A row as it stands there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<const N: usize> {
+    /// The line it stands on.
+    pub line: u64,
+    /// Its time in 1e-9 of the column's unit; `None` where the cell has none, and of a clock that is a rate.
+    pub ticks: Option<i128>,
+    /// Its values, NaN where a cell has none.
+    pub values: [f64; N],
+}
+
+/// What comes next in a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Next<const N: usize> {
+    /// A row.
+    Row(Row<N>),
+    /// A line that is none.
+    Mistake(Mistake),
+    /// The end.
+    End,
+}
+
+/// Why the values of a row cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Flaw {
+    /// They are all zero, as a program writes what it does not have: the row is left out.
+    Zero,
+    /// A mistake, in words.
+    Wrong(String),
+}
+
+/// All rows of a table that can be used, in order but for the breaks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series<T> {
+    /// Their times.
+    pub times: Times,
+    /// Their values.
+    pub values: Vec<T>,
+    /// The lines they stand on.
+    pub lines: Vec<u32>,
+    /// How many there were, and how many are left out.
+    pub rows: Rows,
+    /// Of each watched column whether anything changes in it.
+    pub changes: Vec<bool>,
+    /// What the user should know of how they were read.
+    pub remarks: Vec<String>,
+}
+
+impl<R: BufRead> Table<R> {
+    /// Reads the header; `name` is what messages call the file.
+    ///
+    /// # Errors
+    /// The system's, or a file that is empty.
+    pub fn open(name: &str, reader: R) -> Result<Table<R>, TableError> {
+        let mut lines = Lines::new(reader);
+        let (mut held, mut comments) = (Vec::new(), 0);
+        loop {
+            let mut line = Numbered::default();
+            if !lines.next(&mut line).map_err(|source| io_error(name, source))? {
+                break;
+            }
+            comments += usize::from(line.is_comment());
+            held.push(line);
+            if comments > COMMENTS
+                && let Some(first) = held.iter().position(Numbered::is_comment)
+            {
+                held.remove(first);
+                comments -= 1;
+            }
+            if held.len() - comments >= LOOK || head::is_enough(&held) {
+                break;
+            }
+        }
+        if held.iter().all(Numbered::is_comment) {
+            return Err(TableError::Content(format!(
+                "{name} is empty: a header and rows of numbers are needed"
+            )));
+        }
+        let head = head::find(&held);
+        let held: VecDeque<_> = held.drain(head.rows_from..).collect();
+        let row = held.front().map(|line| (line.number, line.text.as_str()));
+        let columns = Columns::new(name, &head, row);
+        let comma = matches!(head.delimiter, b';' | b'\t');
+        let (line, cells) = (Numbered::default(), Vec::new());
+        Ok(Table { columns, delimiter: head.delimiter, comma, held, lines, line, cells })
+    }
+
+    /// Which column is called so, or has this number from 1.
+    pub fn pick(&self, wanted: &str) -> Option<usize> {
+        self.columns.pick(wanted)
+    }
+
+    /// Which columns are called so, or have these numbers from 1.
+    ///
+    /// # Errors
+    /// There are none: all of these that are missing, and what there is.
+    pub fn picks<const N: usize>(&self, wanted: &[String; N]) -> Result<[usize; N], TableError> {
+        self.columns.picks(wanted)
+    }
+
+    /// When its rows are: as chosen, else by the column of time that is known by its name; `None` where there is none.
+    ///
+    /// # Errors
+    /// The column that is chosen is not there.
+    pub fn clock(&self, choice: &Choice) -> Result<Option<Clock>, TableError> {
+        self.columns.clock(choice)
+    }
+
+    /// Where its attitude is: as chosen, else by the columns that are known by their names; `None` where there is none.
+    ///
+    /// # Errors
+    /// A column that is chosen is not there.
+    pub fn attitude(&self, choice: &Choice) -> Result<Option<Attitudes>, TableError> {
+        self.columns.attitude(choice)
+    }
+
+    /// Where an angular rate is, by the names of the columns.
+    pub fn angular_rate(&self) -> Option<Set<3>> {
+        names::angular_rate(self.columns.names.as_deref()?)
+    }
+
+    /// Where a position is, by the names of the columns.
+    pub fn position(&self) -> Option<[usize; 3]> {
+        self.columns.position()
+    }
+
+    /// Whether its columns have names.
+    pub fn is_headed(&self) -> bool {
+        self.columns.names.is_some()
+    }
+
+    /// What its rows are, where nothing in them can be read but their kind is known.
+    pub fn kind(&self) -> Option<&'static Kind> {
+        self.columns.kind()
+    }
+
+    /// What messages call a column: its name, or its number from 1.
+    pub fn called(&self, column: usize) -> String {
+        self.columns.called(column)
+    }
+
+    /// What its columns are, as the end of a sentence.
+    pub fn told(&self) -> String {
+        self.columns.told()
+    }
+
+    /// File and line of the header, or of the first row where there is none.
+    pub fn place(&self) -> String {
+        format!("{}:{}", self.columns.file, self.columns.line)
+    }
+
+    /// The next row.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn next<const N: usize>(&mut self, wanted: &Wanted<N>) -> Result<Next<N>, TableError> {
+        let more = self.advance().map_err(|source| io_error(&self.columns.file, source))?;
+        if !more {
+            return Ok(Next::End);
+        }
+        Ok(match self.row(wanted) {
+            Ok(row) => Next::Row(row),
+            Err((column, what)) => {
+                let column = column.map(|column| self.called(column));
+                Next::Mistake(Mistake { line: self.line.number, column, what })
+            }
+        })
+    }
+
+    /// Reads the next line that is no comment into its cells.
+    fn advance(&mut self) -> io::Result<bool> {
+        loop {
+            match self.held.pop_front() {
+                Some(line) => self.line = line,
+                None if self.lines.next(&mut self.line)? => {}
+                None => return Ok(false),
+            }
+            if !self.line.is_comment() {
+                cells::split(&self.line.text, self.delimiter, &mut self.cells);
+                return Ok(true);
+            }
+        }
+    }
+
+    fn text(&self, column: usize) -> &str {
+        self.cells.get(column).map_or("", |cell| &self.line.text[cell.clone()])
+    }
+
+    /// The row just read, or which column is wrong and why.
+    fn row<const N: usize>(&self, wanted: &Wanted<N>) -> Result<Row<N>, (Option<usize>, String)> {
+        let count = self.cells.len();
+        let is_trailing = count == self.columns.count + 1 && self.text(count - 1).is_empty();
+        if count != self.columns.count && !is_trailing {
+            let what = if self.is_headed() { "the header" } else { "the first" };
+            return Err((None, format!("the row has {count} columns, {what} {}", self.columns.count)));
+        }
+        let ticks = match wanted.clock {
+            Clock::Rate(_) => None,
+            Clock::Column { time, .. } => self.ticks(time)?,
+        };
+        let mut values = [0.0; N];
+        for (value, column) in values.iter_mut().zip(wanted.columns) {
+            *value = match cells::cell(self.text(column), self.comma) {
+                Cell::Number(number) => number,
+                Cell::Missing => f64::NAN,
+                Cell::Word => return Err((Some(column), format!("`{}` is no number", self.text(column)))),
+            };
+        }
+        Ok(Row { line: self.line.number, ticks, values })
+    }
+
+    fn ticks(&self, time: TimeColumn) -> Result<Option<i128>, (Option<usize>, String)> {
+        let of = |column: usize| {
+            let text = self.text(column);
+            let is_comma = self.comma && text.contains(',');
+            let ticks = if is_comma { decimal(&text.replacen(',', ".", 1)) } else { decimal(text) };
+            match (ticks, cells::cell(text, self.comma)) {
+                (Some(ticks), _) => Ok(Some(ticks)),
+                (None, Cell::Missing) => Ok(None),
+                _ => Err((Some(column), format!("`{text}` is no time"))),
+            }
+        };
+        let whole = of(time.column)?;
+        let Some(fine) = time.fine else { return Ok(whole) };
+        Ok(whole.zip(of(fine)?).map(|(whole, fine)| whole.saturating_add(fine / TICKS)))
+    }
+
+    /// Reads all rows; `make` takes the values of one.
+    ///
+    /// # Errors
+    /// The system's; words where numbers should be, rows of another width, what `make` calls wrong, times in no order.
+    pub fn read<const N: usize, T>(
+        mut self,
+        wanted: &Wanted<N>,
+        mut make: impl FnMut(&[f64; N]) -> Result<T, Flaw>,
+    ) -> Result<Series<T>, TableError> {
+        let mut series = Series {
+            times: Times::default(),
+            values: Vec::new(),
+            lines: Vec::new(),
+            rows: Rows::default(),
+            changes: Vec::new(),
+            remarks: Vec::new(),
+        };
+        let mut mistakes = Mistakes::default();
+        let mut watch = Watch::new(&wanted.watched);
+        let mut has_comma = false;
+        loop {
+            let row = match self.next(wanted)? {
+                Next::End => break,
+                Next::Mistake(mistake) => {
+                    mistakes.push(mistake);
+                    continue;
+                }
+                Next::Row(row) => row,
+            };
+            let counted = match wanted.clock {
+                Clock::Rate(rate) => Some(i128::from(rate.tick(series.rows.read as u64).0)),
+                Clock::Column { .. } => row.ticks,
+            };
+            series.rows.read += 1;
+            watch.see(|column| self.text(column), self.comma);
+            has_comma |= self.comma && self.line.text.contains(',');
+            let Some(ticks) = counted.filter(|_| row.values.iter().all(|value| value.is_finite())) else {
+                series.rows.leave(Reason::NotFinite, row.line);
+                continue;
+            };
+            match make(&row.values) {
+                Ok(value) => {
+                    series.times.ticks.push(ticks);
+                    series.values.push(value);
+                    series.lines.push(u32::try_from(row.line).unwrap_or(u32::MAX));
+                }
+                Err(Flaw::Zero) => series.rows.leave(Reason::Zero, row.line),
+                Err(Flaw::Wrong(what)) => mistakes.push(Mistake { line: row.line, column: None, what }),
+            }
+        }
+        mistakes.end(&self.columns.file)?;
+        series.changes = watch.changes;
+        if has_comma {
+            series.remarks.push("a comma in its numbers is read as a decimal point".into());
+        }
+        series.order(wanted.clock);
+        if 8 * series.times.breaks.len() > series.values.len() {
+            let line = series.lines[series.times.breaks[0]];
+            let (breaks, rows) = (series.times.breaks.len(), series.rows.read);
+            let what = format!("its times are in no order: in {rows} rows they step back {breaks} times");
+            if breaks > 1 {
+                return Err(TableError::Content(format!("{}:{line}: {what}", self.columns.file)));
+            }
+        }
+        Ok(series)
+    }
+}
+
+impl<T> Series<T> {
+    /// Sets the unit, goes on where a counter wraps, leaves out what is out of order and finds the breaks.
+    fn order(&mut self, clock: Clock) {
+        let Clock::Column { time, assumed } = clock else {
+            self.times.unit = Some(super::TimeUnit::S);
+            return;
+        };
+        self.times.unit = time.unit;
+        let wraps = order::unwrap(&mut self.times.ticks, time.unit);
+        if let Some(first) = wraps.first() {
+            let line = self.lines[*first];
+            self.remarks.push(format!("its time wraps at 2^32 in line {line} and is counted on"));
+        }
+        let fates = order::fates(&self.times.ticks);
+        let mut kept = 0;
+        for (row, fate) in fates.iter().enumerate() {
+            let line = u64::from(self.lines[row]);
+            match fate {
+                Fate::Kept => kept += 1,
+                Fate::Break => {
+                    self.times.breaks.push(kept);
+                    kept += 1;
+                }
+                Fate::Duplicate => self.rows.leave(Reason::Duplicate, line),
+                Fate::Overtaken => self.rows.leave(Reason::Overtaken, line),
+                Fate::Ahead => self.rows.leave(Reason::Ahead, line),
+            }
+        }
+        let is_kept = |row: usize| matches!(fates[row], Fate::Kept | Fate::Break);
+        if kept < fates.len() {
+            retain(&mut self.times.ticks, is_kept);
+            retain(&mut self.values, is_kept);
+            retain(&mut self.lines, is_kept);
+        }
+        let is_likely = |unit: &super::TimeUnit| self.times.plausible().contains(unit);
+        if let Some(unit) = assumed.filter(|unit| self.times.unit.is_none() && is_likely(unit)) {
+            self.times.unit = Some(unit);
+        }
+    }
+}
+
+/// Keeps the elements at these places.
+fn retain<T>(all: &mut Vec<T>, is_kept: impl Fn(usize) -> bool) {
+    let mut place = 0;
+    all.retain(|_| {
+        place += 1;
+        is_kept(place - 1)
+    });
+}
+
+/// Columns that are watched for any change.
+struct Watch {
+    columns: Vec<usize>,
+    first: Vec<Option<f64>>,
+    changes: Vec<bool>,
+}
+
+impl Watch {
+    fn new(columns: &[usize]) -> Watch {
+        let count = columns.len();
+        Watch { columns: columns.to_vec(), first: vec![None; count], changes: vec![false; count] }
+    }
+
+    fn see<'a>(&mut self, text: impl Fn(usize) -> &'a str, comma: bool) {
+        for (i, column) in self.columns.iter().enumerate() {
+            if !self.changes[i]
+                && let Cell::Number(number) = cells::cell(text(*column), comma)
+            {
+                let first = *self.first[i].get_or_insert(number);
+                self.changes[i] = first != number;
+            }
+        }
+    }
+}
+
+fn io_error(name: &str, source: io::Error) -> TableError {
+    TableError::Io { name: name.to_string(), source }
+}
