@@ -15,7 +15,7 @@ mod sampled;
 mod track;
 
 pub use error::AttitudeError;
-pub use file::{FileError, Recorded, read};
+pub use file::{FileError, Reading, Recorded, read, read_as};
 pub use judge::{
     Align, Clock, DelayKnown, Figures, Judged, Options, Row, Stamp, Timed, Truth, judge, judge_readings,
 };

@@ -1,6 +1,7 @@
 //! `ratetable score`: recorded estimates and filters against the truth, side by side.
 
 mod charts;
+mod columns;
 mod sources;
 mod text;
 
@@ -9,7 +10,7 @@ use super::{Refusal, Verdict, say};
 use crate::dataset;
 use crate::geometry::Axes;
 use crate::report::{Limit, LimitError, ScoreReport, Scored};
-use crate::score::{self, Clock, DelayKnown, Figures, Judged, Recorded, Track};
+use crate::score::{self, Clock, DelayKnown, Figures, Judged, Recorded, Timed, Track};
 use crate::time::SimTime;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -31,6 +32,8 @@ pub struct Arguments {
     /// The axes of tables and TUM trajectories: ned-frd or enu-flu [default: the dataset's, else ned-frd]
     #[arg(long, value_name = "AXES", value_parser = axes)]
     axes: Option<Axes>,
+    #[command(flatten)]
+    columns: columns::Columns,
     /// Fail (exit 1) unless a field of the report keeps to this, such as 'estimates.vqf.rms_deg<1'; a field of an
     /// estimate alone, such as 'rms_deg<1', means each of them
     #[arg(long = "limit", value_name = "FIELD<VALUE", value_parser = options::limit)]
@@ -55,22 +58,25 @@ struct Source {
     name: String,
     source: String,
     recorded: Recorded,
+    /// What was recorded, with its times in ns.
+    estimates: Vec<Timed>,
 }
 
 pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(dir) = &arguments.out {
         dataset::may_write(dir, arguments.force)?;
     }
-    let truth = sources::truth(&arguments.truth, arguments.axes)?;
-    let sources = sources::estimates(&truth, &arguments.estimate, arguments.axes)?;
+    let given = sources::Given { axes: arguments.axes, columns: arguments.columns.choice() };
+    let truth = sources::truth(&arguments.truth, &given)?;
+    let sources = sources::estimates(&truth, &arguments.estimate, &given)?;
     check_limits(&arguments.limit, &sources)?;
     let mut judged = Vec::new();
     let mut scored = Vec::new();
-    for Source { name, source, recorded } in &sources {
-        let one = judge(&truth.track, recorded, arguments).ok_or_else(|| {
+    for Source { name, source, recorded, estimates } in &sources {
+        let one = judge(&truth.track, recorded, estimates, arguments).ok_or_else(|| {
             Refusal(format!(
                 "{source}: none of its {} attitudes is at a time at which the truth is known ({} to {}{})",
-                recorded.estimates.len(),
+                estimates.len(),
                 truth.track.first(),
                 truth.track.last(),
                 if arguments.settle > SimTime::ZERO { ", less --settle" } else { "" }
@@ -102,7 +108,7 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
 }
 
 /// On the truth's clock, unless the times do not fit or the estimate is far off there and near on a clock of its own.
-fn judge(track: &Track, recorded: &Recorded, arguments: &Arguments) -> Option<Judged> {
+fn judge(track: &Track, recorded: &Recorded, estimates: &[Timed], arguments: &Arguments) -> Option<Judged> {
     let options = score::Options {
         align: arguments.align.into(),
         clock: Clock::Scene,
@@ -112,14 +118,14 @@ fn judge(track: &Track, recorded: &Recorded, arguments: &Arguments) -> Option<Ju
     };
     let on = |clock| {
         let options = score::Options { clock, ..options };
-        score::judge_readings(&|t| track.at(t), &recorded.estimates, &recorded.others, &options)
+        score::judge_readings(&|t| track.at(t), estimates, &recorded.others, &options)
     };
     let within = |i: usize| {
-        let t = recorded.estimates[i].arrival;
+        let t = estimates[i].arrival;
         track.first() <= t && t <= track.last()
     };
-    let inside = (0..recorded.estimates.len()).filter(|&i| within(i)).count();
-    let is_ours = 2 * inside >= recorded.estimates.len();
+    let inside = (0..estimates.len()).filter(|&i| within(i)).count();
+    let is_ours = 2 * inside >= estimates.len();
     let ours = if is_ours { Some(on(Clock::Scene)?) } else { None };
     let is_good = |judged: &Judged| judged.figures.rms_deg < 10.0 || judged.figures.looks.is_some();
     if ours.as_ref().is_some_and(is_good) {

@@ -127,6 +127,12 @@ impl Columns {
             })
     }
 
+    /// Whether a column is called so, whatever its number.
+    pub fn has(&self, wanted: &str) -> bool {
+        let names = self.names.as_deref().unwrap_or_default();
+        names.iter().any(|name| name.text.eq_ignore_ascii_case(wanted))
+    }
+
     /// The places of columns that a user names, or which of them there are not.
     pub fn picks<const N: usize>(&self, wanted: &[String; N]) -> Result<[usize; N], TableError> {
         let missing: Vec<_> = wanted.iter().filter(|name| self.pick(name).is_none()).collect();

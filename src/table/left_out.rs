@@ -64,7 +64,8 @@ impl Rows {
         };
         *count += 1;
         let first = &mut self.first[reason as usize];
-        *first = Some(first.map_or(line, |first| first.min(line)));
+        // Records that are no lines have the number 0.
+        *first = Some(first.map_or(line, |first| first.min(line))).filter(|line| *line > 0);
     }
 
     /// What is left out and why, in one line; nothing where nothing is.

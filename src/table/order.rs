@@ -93,7 +93,9 @@ pub(super) fn fates(ticks: &[i128]) -> Vec<Fate> {
 
 /// How many of the last rows have to go so that row `i` is in order, if they are few.
 fn ahead(ticks: &[i128], kept: &[usize], i: usize) -> Option<usize> {
-    let is_first = |count: usize| count == kept.len() && ticks.len() - i > FEW;
+    // With nothing before them, what follows has to be in order itself.
+    let goes_on = || ticks.get(i..=i + FEW).is_some_and(|next| next.windows(2).all(|pair| pair[0] < pair[1]));
+    let is_first = |count: usize| count == kept.len() && goes_on();
     let is_after = |count: usize| count < kept.len() && ticks[kept[kept.len() - 1 - count]] < ticks[i];
     (1..=AHEAD.min(kept.len())).find(|&count| is_after(count) || is_first(count))
 }
@@ -128,6 +130,7 @@ mod tests {
     fn a_clock_that_begins_anew_is_a_break_and_not_overtaken() {
         assert_eq!(of(&[even(1000, 20), even(0, 20)].concat()), [(20, Break)]);
         assert_eq!(of(&[even(100, 4), even(0, 4)].concat()), [(4, Break)]);
+        assert_eq!(of(&[9, 8, 7, 6, 5, 4, 3, 2, 1, 0, -1, -2]).len(), 11, "a table that runs backwards");
         // Set back by more than a few rows.
         assert_eq!(of(&[even(0, 40), even(20, 40)].concat()), [(40, Break)]);
         assert_eq!(of(&[even(1000, 20), even(500, 20), even(0, 20)].concat()), [(20, Break), (40, Break)]);

@@ -143,6 +143,11 @@ impl<R: BufRead> Table<R> {
         self.columns.pick(wanted)
     }
 
+    /// Whether a column is called so, in letters of either case.
+    pub fn has(&self, wanted: &str) -> bool {
+        self.columns.has(wanted)
+    }
+
     /// Which columns are called so, or have these numbers from 1.
     ///
     /// # Errors
@@ -233,6 +238,11 @@ impl<R: BufRead> Table<R> {
                 return Ok(true);
             }
         }
+    }
+
+    /// What stands in a column of the row that was read last.
+    pub fn cell(&self, column: usize) -> &str {
+        self.text(column)
     }
 
     fn text(&self, column: usize) -> &str {
@@ -347,6 +357,16 @@ impl<R: BufRead> Table<R> {
 }
 
 impl<T> Series<T> {
+    /// Of records that are no lines of a text, with ticks of `unit`: those out of order are left out of `rows` too.
+    pub fn of_records(ticks: Vec<i128>, values: Vec<T>, unit: super::TimeUnit, rows: Rows) -> Series<T> {
+        let time = TimeColumn { column: 0, fine: None, unit: Some(unit) };
+        let lines = vec![0; values.len()];
+        let times = Times { ticks, ..Times::default() };
+        let mut series = Series { times, values, lines, rows, changes: Vec::new(), remarks: Vec::new() };
+        series.order(Clock::Column { time, assumed: None });
+        series
+    }
+
     /// Sets the unit, goes on where a counter wraps, leaves out what is out of order and finds the breaks.
     fn order(&mut self, clock: Clock) {
         let Clock::Column { time, assumed } = clock else {

@@ -52,7 +52,7 @@ fn a_restart_is_a_break_and_a_wrap_is_none() {
     let restart = of(&mut (0..20).map(|k| 5000 + 10 * k).chain((0..20).map(|k| 10 * k)));
     let series = read(&format!("t_ms,qw,qx,qy,qz\n{restart}"));
     assert_eq!((series.times.breaks, series.rows.left_out.count()), (vec![20], 0));
-    let wraps = of(&mut (-20..20).map(|k| (10 * k).rem_euclid(1 << 32)));
+    let wraps = of(&mut (-20..20i64).map(|k| (10 * k).rem_euclid(1 << 32)));
     let series = read(&format!("time_boot_ms,qw,qx,qy,qz\n{wraps}"));
     assert_eq!((series.times.breaks.len(), series.rows.left_out.count()), (0, 0));
     let ns = series.times.in_ns(TimeUnit::Ms).unwrap();

@@ -5,8 +5,9 @@ use crate::dataset::read::{self as stored, readings};
 use crate::filters::{self, FILTERS, Readings, SIX};
 use crate::geometry::Axes;
 use crate::scene::{Plan, nearest};
-use crate::score::{self, Recorded, Stamp, Timed, Track};
+use crate::score::{self, Reading, Recorded, Timed, Track};
 use crate::sensor::SensorKind;
+use crate::table::{Choice, Rows, TimeUnit, Times};
 use crate::time::SimTime;
 use std::path::{Path, PathBuf};
 
@@ -18,8 +19,22 @@ pub(super) struct Truth {
     folder: Option<PathBuf>,
 }
 
+/// How the files are to be read.
+pub(super) struct Given {
+    /// The axes of tables and trajectories.
+    pub axes: Option<Axes>,
+    /// The columns of tables that do not name them.
+    pub columns: Choice,
+}
+
+impl Given {
+    fn reading(&self, axes: Axes) -> Reading {
+        Reading { axes: self.axes.unwrap_or(axes), columns: self.columns.clone() }
+    }
+}
+
 /// Reads the truth: of a dataset with its manifest, or of any file of time and attitude.
-pub(super) fn truth(path: &Path, axes: Option<Axes>) -> Result<Truth, Refusal> {
+pub(super) fn truth(path: &Path, given: &Given) -> Result<Truth, Refusal> {
     let beside = path.parent().map(|folder| folder.join("manifest.json"));
     let is_dataset =
         path.is_dir() || (path.ends_with("truth.csv") && beside.is_some_and(|file| file.exists()));
@@ -27,23 +42,40 @@ pub(super) fn truth(path: &Path, axes: Option<Axes>) -> Result<Truth, Refusal> {
         let truth = stored::truth(path)?;
         (truth.attitudes, truth.axes)
     } else {
-        let axes = axes.unwrap_or_default();
-        let Recorded { estimates, axes, .. } = score::read(path, axes)?;
-        (estimates.iter().map(|estimate| (estimate.arrival, estimate.attitude)).collect(), axes)
+        let mut recorded = score::read_as(path, &given.reading(Axes::default()))?;
+        let estimates = timed(&path.display().to_string(), &mut recorded)?;
+        // What is odd in the truth is told at once: its remarks belong to no estimate.
+        recorded.remarks.iter().for_each(|remark| eprintln!("{}: {remark}", path.display()));
+        (estimates.iter().map(|estimate| (estimate.arrival, estimate.attitude)).collect(), recorded.axes)
     };
     let track = Track::new(rows).map_err(|why| Refusal(format!("{}: {why}", path.display())))?;
     Ok(Truth { track, axes, folder: path.is_dir().then(|| path.to_path_buf()) })
 }
 
+/// What a file holds at the times that its unit makes of them, which is told where it is guessed.
+fn timed(name: &str, recorded: &mut Recorded) -> Result<Vec<Timed>, Refusal> {
+    if !recorded.times.breaks.is_empty() {
+        let why = recorded.remarks.last().cloned().unwrap_or_default();
+        return Err(Refusal(format!("{name}: {why}: cut it there")));
+    }
+    let (unit, _) = recorded.times.guess();
+    if recorded.times.unit.is_none() {
+        recorded.remarks.push(format!("its column `{}` is read as {unit}", recorded.time_name));
+    }
+    recorded
+        .timed(unit)
+        .ok_or_else(|| Refusal(format!("{name}: its times, read as {unit}, are beyond 292 years")))
+}
+
 /// Reads the files and runs the filters; every one that cannot be is told.
-pub(super) fn estimates(truth: &Truth, names: &[String], axes: Option<Axes>) -> Result<Vec<Source>, Refusal> {
+pub(super) fn estimates(truth: &Truth, names: &[String], given: &Given) -> Result<Vec<Source>, Refusal> {
     let mut data = None;
     let mut sources: Vec<Source> = Vec::new();
     let mut mistakes = Vec::new();
     for name in names {
         let found = match filters::from_name(name) {
             Some(_) if !Path::new(name).exists() => run(truth, name, &mut data),
-            _ => file(truth, name, axes),
+            _ => file(truth, name, given),
         };
         match found {
             Ok(mut source) => {
@@ -62,7 +94,7 @@ pub(super) fn estimates(truth: &Truth, names: &[String], axes: Option<Axes>) -> 
     if mistakes.is_empty() { Ok(sources) } else { Err(Refusal(mistakes.join("\n"))) }
 }
 
-fn file(truth: &Truth, name: &str, axes: Option<Axes>) -> Result<Source, Refusal> {
+fn file(truth: &Truth, name: &str, given: &Given) -> Result<Source, Refusal> {
     let path = Path::new(name);
     if !path.exists() {
         let names = FILTERS.map(|kind| kind.name);
@@ -73,10 +105,11 @@ fn file(truth: &Truth, name: &str, axes: Option<Axes>) -> Result<Source, Refusal
         )));
     }
     let path = if path.is_dir() { path.join("estimate.csv") } else { path.to_path_buf() };
-    let recorded = score::read(&path, axes.unwrap_or(truth.axes))?;
+    let mut recorded = score::read_as(&path, &given.reading(truth.axes))?;
+    let estimates = timed(name, &mut recorded)?;
     // A dot would end the name in a limit's field.
     let stem = path.file_stem().map_or(name.into(), |stem| stem.to_string_lossy().replace('.', "-"));
-    Ok(Source { name: stem, source: name.to_string(), recorded })
+    Ok(Source { name: stem, source: name.to_string(), recorded, estimates })
 }
 
 /// What filters run on: the dataset's readings and its declination.
@@ -101,14 +134,24 @@ fn run(truth: &Truth, name: &str, data: &mut Option<Data>) -> Result<Source, Ref
             )));
         }
     }
-    let timed = |(t, attitude): (SimTime, _)| Timed { arrival: t, stamp: Stamp::Sample(t), attitude };
-    let estimates = filters::run(kind, readings, with_mag, *declination).into_iter().map(timed).collect();
+    let (times, attitudes): (Vec<_>, Vec<_>) =
+        filters::run(kind, readings, with_mag, *declination).into_iter().unzip();
     let remarks = match with_mag && readings.mag.is_empty() {
         true => vec!["the dataset has no magnetometer: heading is from where it starts".to_string()],
         false => Vec::new(),
     };
-    let recorded = Recorded { estimates, axes: Axes::NedFrd, others: Vec::new(), remarks };
-    Ok(Source { name: name.to_string(), source: name.to_string(), recorded })
+    let recorded = Recorded {
+        rows: Rows::whole(attitudes.len()),
+        attitudes,
+        times: Times::of_ns(times.into_iter().map(|t: SimTime| t.0)),
+        time_name: "t_ns".into(),
+        echoed: true,
+        axes: Axes::NedFrd,
+        others: Vec::new(),
+        remarks,
+    };
+    let estimates = recorded.timed(TimeUnit::Ns).unwrap_or_default();
+    Ok(Source { name: name.to_string(), source: name.to_string(), recorded, estimates })
 }
 
 fn of_dataset(folder: &Path) -> Result<Readings, Refusal> {
