@@ -87,7 +87,8 @@ fn a_header_says_which_column_comes_first_and_in_what_unit_time_is() {
     ] {
         let (figures, said) = scored(&[("truth.csv", &truth), ("estimate.csv", &estimate)], &[]);
         assert!(figures["rms_deg"].as_f64().unwrap() < 1e-6, "{what}: {figures} {said}");
-        assert_eq!(figures["samples"], 400, "{what}");
+        // A delay of a few ns may take the last out of the truth.
+        assert!(figures["samples"].as_u64().unwrap() >= 399, "{what}: {figures}");
     }
     // The other order is another attitude.
     let swapped = turning("# t [s], px, py, pz, qx [], qy [], qz [], qw []\n", 400, |k, w, z| {
@@ -275,7 +276,7 @@ fn the_trajectory_that_generate_writes_plays_again() {
     )]);
     let first = ratetable(
         home.path(),
-        &["generate", "coning", "--for", "1s", "--format", "csv,tum", "--out", "first"],
+        &["generate", "coning", "--set", "duration=\"1 s\"", "--format", "csv,tum", "--out", "first"],
     );
     assert_eq!(first.code, 0, "{}", first.err);
     let second = ratetable(home.path(), &["generate", "again.toml", "--out", "second"]);
