@@ -144,8 +144,9 @@ mod tests {
 
     fn head(text: &str) -> (Option<Vec<String>>, u64, u8, usize) {
         let lines = text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty());
-        let lines: Vec<_> =
-            lines.map(|(text, number)| Numbered { number, text: text.trim().into() }).collect();
+        let lines: Vec<_> = lines
+            .map(|(text, number)| Numbered { number, text: text.trim().into(), is_open: false })
+            .collect();
         let head = find(&lines);
         let names = head.names.map(|names| names.into_iter().map(|name| name.text).collect());
         (names, head.line, head.delimiter, lines.get(head.rows_from).map_or(0, |line| line.number as usize))

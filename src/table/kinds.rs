@@ -66,6 +66,13 @@ const MAGICS: &[(&[u8], Kind)] = &[
         b"H Product:Blackbox",
         kind("a Betaflight or INAV blackbox log", "`blackbox_decode` makes a table of it"),
     ),
+    (
+        b"FMT, 128,",
+        kind(
+            "an ArduPilot log as text (.log)",
+            "its ATT lines under their FMT names, time first, are a table",
+        ),
+    ),
     (b"\xd0\xcf\x11\xe0", kind("an old Excel file (.xls)", "save its sheet as CSV")),
     (b"%PDF-", kind("a PDF", "it holds no numbers to read")),
     (b"\x89PNG\r\n\x1a\n", kind("a PNG picture", "it holds no numbers to read")),

@@ -9,6 +9,8 @@ pub(super) struct Numbered {
     pub number: u64,
     /// What stands in it, without white space around it.
     pub text: String,
+    /// Whether it is the last of the file and no end of line follows: it may have been broken off.
+    pub is_open: bool,
 }
 
 impl Numbered {
@@ -45,6 +47,7 @@ impl<R: BufRead> Lines<R> {
                 true => self.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.bytes),
                 false => &self.bytes,
             };
+            line.is_open = !bytes.ends_with(b"\n");
             line.text.clear();
             match std::str::from_utf8(bytes) {
                 Ok(text) => line.text.push_str(text.trim()),

@@ -295,7 +295,9 @@ fn by_kind<const N: usize>(names: &[Heading], set: Set<N>) -> Set<N> {
     let kind = match () {
         () if set.unit.is_some() => return set,
         () if of_ros => Some((1.0, "ROS counts rad/s")),
-        () if has("rollspeed") && has("yawspeed") => Some((1.0, "MAVLink's ATTITUDE counts rad")),
+        () if has("time_boot") || (has("rollspeed") && has("yawspeed")) => {
+            Some((1.0, "MAVLink's ATTITUDE counts rad"))
+        }
         () if names.iter().any(|heading| heading.text == "TimeUS") && has("des_roll") => {
             Some((1f64.to_radians(), "ArduPilot's ATT counts deg"))
         }
@@ -405,6 +407,13 @@ mod tests {
                 [1, 2, 3, 4],
             ),
             ("sec,w,x,y,z", 0, Some(TimeUnit::S), [1, 2, 3, 4]),
+            ("#timestamp [ns], p_x, p_y, p_z, q_w, q_x, q_y, q_z", 0, Some(TimeUnit::Ns), [4, 5, 6, 7]),
+            (
+                "timestamp,timestamp_ns,gyro_x,gyro_y,gyro_z,quat_w,quat_x,quat_y,quat_z,temperature",
+                1,
+                Some(TimeUnit::Ns),
+                [5, 6, 7, 8],
+            ),
             (
                 "vertex_index,timestamp_ns,p_x_m,p_y_m,p_z_m,q_w,q_x,q_y,q_z",
                 1,
@@ -423,7 +432,10 @@ mod tests {
             ("t,roll(deg),pitch(deg),heading(deg)", [1, 2, 3], angle),
             ("t,att.roll_rad,att.pitch_rad,att.yaw_rad", [1, 2, 3], Some(1.0)),
             ("timestamp,time_boot_ms,roll,pitch,yaw,rollspeed,pitchspeed,yawspeed", [2, 3, 4], Some(1.0)),
+            ("timestamp,time_boot_ms,roll,pitch,yaw", [2, 3, 4], Some(1.0)),
             ("timestamp,TimeUS,DesRoll,Roll,DesPitch,Pitch,DesYaw,Yaw", [3, 5, 7], angle),
+            ("time,lat_deg,lon_deg,height_m,vn,ve,vd,roll_deg,pitch_deg,yaw_deg", [7, 8, 9], angle),
+            ("timestamp,heading_deg,roll_deg,pitch_deg,gyro_x,gyro_y,gyro_z", [2, 3, 1], angle),
             ("t,roll,pitch,yaw", [1, 2, 3], None),
             ("t,roll_deg,pitch_rad,yaw_deg", [1, 2, 3], None),
         ] {
@@ -478,7 +490,11 @@ mod tests {
 
     #[test]
     fn a_stamp_in_two_columns_is_one_time() {
-        for header in ["header.stamp.sec,header.stamp.nanosec,w,x,y,z", "a.stamp.secs,a.stamp.nsecs,qw"] {
+        for header in [
+            "header.stamp.sec,header.stamp.nanosec,w,x,y,z",
+            "a.stamp.secs,a.stamp.nsecs,qw",
+            "stamp_sec,stamp_nanosec,pos_x,pos_y,pos_z,quat_w",
+        ] {
             let expected = TimeColumn { column: 0, fine: Some(1), unit: Some(TimeUnit::S) };
             assert_eq!(time(&names(header)), Some(expected), "{header}");
         }

@@ -311,6 +311,12 @@ impl<R: BufRead> Table<R> {
         loop {
             let row = match self.next(wanted)? {
                 Next::End => break,
+                // A log whose writer lost its power.
+                Next::Mistake(mistake) if self.line.is_open && self.cells.len() < self.columns.count => {
+                    let what = format!("the last row, line {}, breaks off and is left out", mistake.line);
+                    series.remarks.push(what);
+                    continue;
+                }
                 Next::Mistake(mistake) => {
                     mistakes.push(mistake);
                     continue;

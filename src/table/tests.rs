@@ -46,6 +46,18 @@ fn a_word_is_a_mistake_with_its_place_and_of_many_the_first_few_are_listed() {
 }
 
 #[test]
+fn a_last_row_that_breaks_off_is_left_out_and_any_other_short_row_is_a_mistake() {
+    let text = "t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,0,0\n2,1,0";
+    let series = read(text);
+    assert_eq!((series.values.len(), series.rows.read), (2, 2));
+    assert_eq!(series.remarks, ["the last row, line 4, breaks off and is left out"]);
+    for bad in [format!("{text}\n"), format!("{text}\n3,1,0,0,0"), format!("{text},0,0,0")] {
+        let error = attitudes(&bad, &Choice::default()).unwrap_err().to_string();
+        assert!(error.starts_with("x.csv:4: the row has "), "{bad}: {error}");
+    }
+}
+
+#[test]
 fn a_restart_is_a_break_and_a_wrap_is_none() {
     let row = |t: i64| format!("{t},1,0,0,0\n");
     let of = |times: &mut dyn Iterator<Item = i64>| times.map(row).collect::<String>();

@@ -89,9 +89,7 @@ fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>)
         (None, None, column) => {
             let column = column.unwrap_or_default();
             let unit = guessed(file, series, &column)?;
-            let how = format!(
-                "{file}: its column `{column}` has no unit and is read as {unit}, by how far apart rows are"
-            );
+            let how = format!("{file}: its column `{column}` has no unit and is read as {unit}");
             (unit.ns(), Some(how))
         }
     };

@@ -275,7 +275,11 @@ fn mistakes_of_a_log_are_placed() {
             "file",
             "log.csv:5: the row has 3 columns, the header 5",
         ),
-        ("t_ns,qw,qx,qy,qz\r\n0,1,0,0,0\r\n\r\n# note\r\n1,1,0", "file", "log.csv:5: the row has 3 columns"),
+        (
+            "t_ns,qw,qx,qy,qz\r\n0,1,0,0,0\r\n\r\n# note\r\n1,1,0\r\n",
+            "file",
+            "log.csv:5: the row has 3 columns",
+        ),
         (
             "t_ns,qw,qx,qy,qz\n5,1,0,0,0\n6,1,0,0,0\n0,1,0,0,0\n1,1,0,0,0\n2,1,0,0,0\n",
             "file",
