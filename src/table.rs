@@ -28,6 +28,7 @@ mod lines;
 mod names;
 mod order;
 mod read;
+mod series;
 mod times;
 mod units;
 
@@ -36,7 +37,8 @@ pub use error::{Mistake, TableError};
 pub use kinds::{Kind, is_text, kind_of};
 pub use left_out::{LeftOut, Rows};
 pub use names::{Heading, Set, TimeColumn};
-pub use read::{Flaw, Next, Row, Series, Table, Wanted};
+pub use read::{Next, Row, Table, Wanted};
+pub use series::{Flaw, Series};
 pub use times::{TICKS, TimeUnit, Times, decimal};
 pub use units::Unit;
 

@@ -152,7 +152,10 @@ impl Columns {
         }
         let names = self.names.as_deref().unwrap_or_default();
         let given = match &choice.time {
-            Some(name) => Some(self.picks(&[name.clone()])?[0]),
+            Some(name) => {
+                let [column] = self.picks(std::array::from_ref(name))?;
+                Some(column)
+            }
             None => None,
         };
         let found = match given {

@@ -55,10 +55,10 @@ pub(super) fn find(lines: &[Numbered]) -> Head {
     let known = candidates().map(|(i, names)| (known(&names), i)).filter(|(known, _)| *known > 0).max();
     let same = |names: &[String]| width == Some(names.len()) && names.len() > 1;
     let of_shape = || {
-        let last = candidates().filter(|(i, names)| plain(i) && same(names)).last();
+        let last = candidates().rfind(|(i, names)| plain(i) && same(names));
         // A file without a row may have a header still.
         let first = || candidates().find(|(i, _)| plain(i));
-        last.or_else(first).or_else(|| candidates().filter(|(_, names)| same(names)).last()).map(|(i, _)| i)
+        last.or_else(first).or_else(|| candidates().rfind(|(_, names)| same(names))).map(|(i, _)| i)
     };
     let Some(at) = known.map(|(_, i)| i).or_else(of_shape) else {
         return Head {

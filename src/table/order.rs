@@ -69,10 +69,9 @@ pub(super) fn fates(ticks: &[i128]) -> Vec<Fate> {
                     i = end;
                     continue;
                 } else if let Some(count) = ahead {
-                    let gone = kept.drain(kept.len() - count..);
-                    let begins = gone.fold(false, |begins, row| {
-                        std::mem::replace(&mut fates[row], Fate::Ahead) == Fate::Break || begins
-                    });
+                    let gone = kept.split_off(kept.len() - count);
+                    let begins = gone.iter().any(|row| fates[*row] == Fate::Break);
+                    gone.iter().for_each(|row| fates[*row] = Fate::Ahead);
                     fates[i] = if begins { Fate::Break } else { Fate::Kept };
                     kept.push(i);
                 } else if ticks.len() - i <= FEW && 4 * (ticks.len() - i) <= kept.len() {

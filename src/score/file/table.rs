@@ -30,7 +30,8 @@ pub(super) fn read<R: BufRead>(name: &str, reader: R, reading: &Reading) -> Resu
                 },
             };
             let series = table.read(&Wanted::new(clock, set.columns), make)?;
-            recorded(name, series, axes, Vec::new(), remarks, time_name)
+            let recorded = recorded(name, series, remarks)?;
+            Ok(Recorded { time_name, axes, ..recorded })
         }
         Attitudes::Euler(set) => {
             let unit = unit_of_angles(&table, &set, &mut remarks)?;
@@ -42,27 +43,15 @@ pub(super) fn read<R: BufRead>(name: &str, reader: R, reading: &Reading) -> Resu
                 1.0 => vec![("in degrees read as radians", all(1f64.to_radians()))],
                 _ => Vec::new(),
             };
-            let series = Series {
-                values: all(unit),
-                times: series.times,
-                lines: series.lines,
-                rows: series.rows,
-                changes: series.changes,
-                remarks: series.remarks,
-            };
-            recorded(name, series, axes, others, remarks, time_name)
+            let series = series.with(all(unit));
+            let recorded = recorded(name, series, remarks)?;
+            Ok(Recorded { time_name, axes, others, ..recorded })
         }
     }
 }
 
-fn recorded(
-    name: &str,
-    series: Series<Attitude>,
-    axes: Axes,
-    others: Vec<(&'static str, Vec<Attitude>)>,
-    mut remarks: Vec<String>,
-    time_name: String,
-) -> Result<Recorded, FileError> {
+/// What a series amounts to, in no axes yet.
+fn recorded(name: &str, series: Series<Attitude>, mut remarks: Vec<String>) -> Result<Recorded, FileError> {
     let told = series.rows.told();
     if series.values.is_empty() {
         return Err(FileError::Content(match told {
@@ -81,10 +70,10 @@ fn recorded(
     Ok(Recorded {
         attitudes: series.values,
         times: series.times,
-        time_name,
+        time_name: String::new(),
         echoed: false,
-        axes,
-        others,
+        axes: Axes::default(),
+        others: Vec::new(),
         remarks,
         rows: series.rows,
     })
