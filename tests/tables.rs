@@ -99,6 +99,23 @@ fn a_header_says_which_column_comes_first_and_in_what_unit_time_is() {
 }
 
 #[test]
+fn a_unit_that_is_not_said_is_told_and_one_that_is_said_is_not() {
+    let truth = plain(400);
+    let of = |name: &str| {
+        turning(&format!("{name},q[0],q[1],q[2],q[3]\n"), 400, |k, w, z| {
+            format!("{},{w},0,0,{z}", k * 10_000)
+        })
+    };
+    for (name, says) in
+        [("timestamp", true), ("timestamp_us", false), ("timestamp [us]", false), ("TimeUS", false)]
+    {
+        let (figures, said) = scored(&[("truth.csv", &truth), ("px4.csv", &of(name))], &[]);
+        assert!(figures["rms_deg"].as_f64().unwrap() < 1e-6, "{name}: {figures}");
+        assert_eq!(said.contains(&format!("its column `{name}` is read as us")), says, "{name}: {said}");
+    }
+}
+
+#[test]
 fn a_few_rows_with_the_header_of_euroc_are_read_as_they_stand() {
     for header in [
         "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []",

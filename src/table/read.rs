@@ -257,7 +257,7 @@ impl<R: BufRead> Table<R> {
             match (ticks, cells::cell(text, self.comma)) {
                 (Some(ticks), _) => Ok(Some(ticks)),
                 (None, Cell::Missing) => Ok(None),
-                _ => Err((Some(column), format!("`{text}` is no time"))),
+                _ => Err((Some(column), format!("`{text}` is no time: write a number of s, ms, us or ns"))),
             }
         };
         let whole = of(time.column)?;
