@@ -49,6 +49,13 @@ pub(super) fn split(line: &str, delimiter: u8, cells: &mut Vec<Range<usize>>) {
     cells.push(bare(line, start..bytes.len()));
 }
 
+/// How many cells a line has.
+pub(super) fn count(line: &str, delimiter: u8) -> usize {
+    let mut cells = Vec::new();
+    split(line, delimiter, &mut cells);
+    cells.len()
+}
+
 fn bare(line: &str, mut range: Range<usize>) -> Range<usize> {
     let bytes = line.as_bytes();
     let is_edge = |byte: u8| byte.is_ascii_whitespace() || byte == b'"';

@@ -14,6 +14,8 @@ use std::ops::Range;
 
 /// As many lines are looked at for a header.
 const LOOK: usize = 256;
+/// The widest table that is looked at; the work of naming columns grows with the square of their number.
+const WIDE: usize = 1024;
 /// As many comments above the header are kept.
 const COMMENTS: usize = 64;
 
@@ -101,6 +103,15 @@ impl<R: BufRead> Table<R> {
                 "{name} is empty: a header and rows of numbers are needed"
             )));
         }
+        let count = |line: &Numbered| cells::count(&line.text, cells::delimiter(&line.text));
+        if let Some(line) = held.iter().find(|line| !line.is_comment() && count(line) > WIDE) {
+            return Err(TableError::Content(format!(
+                "{name}:{} has {} columns, more than the {WIDE} that are looked at",
+                line.number,
+                count(line)
+            )));
+        }
+        held.retain(|line| count(line) <= WIDE);
         let head = head::find(&held);
         let held: VecDeque<_> = held.drain(head.rows_from..).collect();
         let row = held.front().map(|line| (line.number, line.text.as_str()));

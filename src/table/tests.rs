@@ -215,6 +215,19 @@ proptest! {
     }
 }
 
+#[test]
+fn a_table_of_absurdly_many_columns_is_refused_at_once() {
+    let wide = |count: usize| (0..count).map(|k| format!("q_{k}_w,")).collect::<String>() + "t_s,qw,qx,qy,qz";
+    let row = |count: usize| "0,".repeat(count) + "0,1,0,0,0";
+    let text = |count: usize| format!("{}\n{}\n", wide(count), row(count));
+    let error = Table::open("x.csv", text(200_000).as_bytes()).unwrap_err().to_string();
+    assert_eq!(error, "x.csv:1 has 200005 columns, more than the 1024 that are looked at");
+    assert_eq!(read(&text(1000)).values, [[1.0, 0.0, 0.0, 0.0]], "and many are no hindrance");
+    // A comment may be as long as it likes.
+    let comment = format!("# {}\nt_s,qw,qx,qy,qz\n0,1,0,0,0\n", "a, ".repeat(100_000));
+    assert_eq!(read(&comment).rows.read, 1);
+}
+
 /// Work grows with the bytes: twice the lines, twice the work, counted in rows and not in seconds.
 #[test]
 fn a_long_table_is_read_once() {
