@@ -6,6 +6,7 @@
 
 use super::TimeUnit;
 use super::units::{self, Unit};
+use std::collections::BTreeMap;
 
 /// The name of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -241,27 +242,18 @@ fn sets<const N: usize>(
         let head = last.strip_suffix(component).filter(|head| heads.contains(head) && !head.is_empty())?;
         Some(if before.is_empty() { head.to_string() } else { format!("{before}_{head}") })
     };
-    let mut found: Vec<Family<N>> = Vec::new();
+    let mut families: BTreeMap<String, [Option<usize>; N]> = BTreeMap::new();
     for (i, heading) in names.iter().enumerate().filter(|(_, heading)| !heading.is_aside()) {
-        let Some(of) = family(heading, components[0]).filter(|of| is_meant(of)) else { continue };
-        if found.iter().any(|(other, _)| *other == of) {
-            continue;
-        }
-        let place = |component: &str| {
-            names.iter().position(|other| {
-                !other.is_aside() && family(other, component).as_deref() == Some(of.as_str())
-            })
-        };
-        let mut columns = [i; N];
-        let is_whole = columns
-            .iter_mut()
-            .zip(components)
-            .all(|(column, component)| place(component).map(|place| *column = place).is_some());
-        if is_whole {
-            found.push((of, columns));
+        for (k, component) in components.into_iter().enumerate() {
+            let Some(of) = family(heading, component).filter(|of| is_meant(of)) else { continue };
+            families.entry(of).or_insert([None; N])[k].get_or_insert(i);
         }
     }
-    found
+    let whole = |(of, columns): (String, [Option<usize>; N])| {
+        let all = columns.iter().all(Option::is_some);
+        all.then(|| (of, columns.map(Option::unwrap_or_default)))
+    };
+    families.into_iter().filter_map(whole).collect()
 }
 
 /// Of several families that of the shortest name, of these the first; its unit is what any of its columns says, if

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// As many lines are looked at for a header.
 const LOOK: usize = 256;
-/// The widest table that is looked at; the work of naming columns grows with the square of their number.
+/// The widest table that is looked at.
 const WIDE: usize = 1024;
 /// As many comments above the header are kept.
 const COMMENTS: usize = 64;
