@@ -276,7 +276,9 @@ fn best<const N: usize>(
         columns: *columns,
         unit: of(columns),
         by_kind: None,
-        others: found[1..].iter().map(|(_, columns)| names[columns[0]].text.clone()).collect(),
+        others: (found[1..].iter().filter(|(_, other)| other[0] != columns[0]))
+            .map(|(_, other)| names[other[0]].text.clone())
+            .collect(),
     })
 }
 
