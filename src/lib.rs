@@ -45,5 +45,6 @@ pub mod score;
 pub mod sensor;
 pub mod session;
 pub mod study;
+pub mod table;
 pub mod time;
 pub mod wire;

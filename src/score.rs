@@ -27,10 +27,9 @@ mod turn;
 pub use align::Align;
 pub use error::AttitudeError;
 pub use figures::{Aligned, DelayKnown, Errors, Figures, Fitted};
-pub use file::{FileError, Recorded, read};
-pub use judge::{
-    Delay, Judged, Options, Readings, Row, Stamp, Timed, Truth, Unjudged, judge, judge_series,
-};
+pub use file::{FileError, Reading, Recorded, read, read_as};
+pub use judge::{Delay, Judged, Options, Readings, Row, Stamp, Timed, Truth, Unjudged, judge, judge_series};
+pub use packed::Packed;
 pub use place::Clock;
 pub use series::Series;
 pub use track::{Track, TrackError};

@@ -8,7 +8,7 @@ use syn::visit::{self, Visit};
 
 /// Rooms without a view of the program: numbers, units, time, frames, declared keys and random streams. Any room
 /// may use them, and they use one another as listed.
-const FOUNDATION: [&str; 6] = ["double", "quantity", "time", "keys", "random", "geometry"];
+const FOUNDATION: [&str; 7] = ["double", "quantity", "time", "keys", "random", "geometry", "table"];
 
 /// Each room and those it uses besides the foundation, as `docs/architecture.md` draws them.
 const ARROWS: &[(&str, &[&str])] = &[
@@ -21,6 +21,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("geometry", &[]),
     // A key is declared with the kind of quantity it takes, and a value may be a time or an attitude.
     ("keys", &["double", "quantity", "time", "geometry"]),
+    // A column that is not there has a nearest name, and a table without times a rate.
+    ("table", &["keys", "time"]),
     // The system calls, the only place of `unsafe`.
     ("os", &[]),
     // Whether a signal is ignored is the kernel's to say.

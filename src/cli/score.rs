@@ -2,9 +2,11 @@
 
 mod book;
 mod charts;
+mod columns;
 mod hints;
 mod sources;
 mod text;
+mod units;
 
 use super::options::{self, Alignment};
 use super::{Refusal, Verdict, say, tell};
@@ -12,6 +14,7 @@ use crate::dataset::{self, Holds};
 use crate::geometry::Axes;
 use crate::report::{Limit, LimitError, ScoreReport, Scored};
 use crate::score::{self, Clock, Delay, Figures, Options, Series, Unjudged};
+use crate::table::{Rows, TimeUnit};
 use crate::time::SimTime;
 use book::Book;
 use serde_json::Value;
@@ -37,12 +40,17 @@ pub struct Arguments {
     /// [default: what the motion, or the times themselves, leave no doubt about]
     #[arg(long, value_enum, conflicts_with = "delay")]
     clock: Option<ClockOf>,
+    /// The unit of times whose column does not say it
+    #[arg(long, value_name = "s|ms|us|ns", value_parser = |text: &str| text.parse::<TimeUnit>())]
+    time_unit: Option<TimeUnit>,
     /// Leave out so much from the truth's start on
     #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::from_zero)]
     settle: SimTime,
     /// The axes of tables and TUM trajectories: ned-frd or enu-flu [default: the dataset's, else ned-frd]
     #[arg(long, value_name = "AXES", value_parser = axes)]
     axes: Option<Axes>,
+    #[command(flatten)]
+    columns: columns::Columns,
     /// Fail (exit 1) unless a field of the report keeps to this, such as 'estimates.vqf.rms_deg<1'; a field of an
     /// estimate alone, such as 'rms_deg<1', means each of them
     #[arg(long = "limit", value_name = "FIELD<VALUE", value_parser = options::limit)]
@@ -68,6 +76,10 @@ struct Source {
     source: String,
     /// What is known of its clock.
     clock: Clock,
+    /// The unit of its times.
+    time_unit: TimeUnit,
+    /// What of a file was read and left out.
+    rows: Option<Rows>,
     recorded: Estimates,
     hints: hints::Known,
 }
@@ -96,15 +108,14 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(dir) = &arguments.out {
         dataset::may_write(dir, arguments.force, Holds::Score, &book::FILES.map(String::from))?;
     }
-    let truth = sources::truth(&arguments.truth, arguments.axes)?;
-    let sources = sources::estimates(&truth, &arguments.estimate, arguments.axes)?;
+    let (truth, sources) = sources::load(arguments)?;
     check_limits(&arguments.limit, &sources)?;
     let mut book = arguments.out.as_ref().map(|dir| Book::open(dir, arguments.force)).transpose()?;
     let mut scored = Vec::new();
     for source in sources {
         scored.push(one(&truth, source, arguments, book.as_mut())?);
     }
-    let report = report(arguments, scored)?;
+    let report = report(arguments, &truth, scored)?;
     tell(&text::report(&report));
     let json = serde_json::to_string_pretty(&report)? + "\n";
     if let (Some(book), Some(dir)) = (book, &arguments.out) {
@@ -118,12 +129,19 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
 }
 
 /// Judges one estimate and adds its errors to the book.
-fn one(truth: &Truth, source: Source, arguments: &Arguments, book: Option<&mut Book>) -> Result<Scored, Refusal> {
-    let Source { name, source, clock, recorded, hints: given } = source;
+fn one(
+    truth: &Truth,
+    source: Source,
+    arguments: &Arguments,
+    book: Option<&mut Book>,
+) -> Result<Scored, Refusal> {
+    let Source { name, source, clock, time_unit, rows, recorded, hints: given } = source;
     let at = |t| truth.track.at(t);
     let Estimates { series, others, axes, remarks } = recorded;
     let (count, options) = (series.len(), options(truth, clock, axes, arguments));
-    let mut scored = Scored { name, source, figures: None, unknown: None, remarks, hints: Vec::new() };
+    let time_unit = time_unit.name();
+    let mut scored =
+        Scored { name, source, figures: None, unknown: None, time_unit, rows, remarks, hints: Vec::new() };
     match score::judge_series(&at, series, &others, &options) {
         Ok(judged) => {
             if let Some(book) = book {
@@ -168,12 +186,14 @@ fn options(truth: &Truth, clock: Clock, axes: Axes, arguments: &Arguments) -> Op
     }
 }
 
-fn report(arguments: &Arguments, estimates: Vec<Scored>) -> Result<ScoreReport, Refusal> {
+fn report(arguments: &Arguments, truth: &Truth, estimates: Vec<Scored>) -> Result<ScoreReport, Refusal> {
     let mut report = ScoreReport {
         version: env!("CARGO_PKG_VERSION").into(),
         ok: true,
         failed: Vec::new(),
         truth: arguments.truth.display().to_string(),
+        truth_time_unit: truth.unit.name(),
+        truth_remarks: truth.remarks.clone(),
         align: arguments.align.name().into(),
         settle_s: arguments.settle.seconds(),
         estimates,
@@ -202,8 +222,10 @@ fn check_limits(limits: &[Limit], sources: &[Source]) -> Result<(), LimitError> 
     let scored = |source: &Source| {
         let (name, source) = (source.name.clone(), source.source.clone());
         let figures = Some(Figures::shape());
-        let scored = Scored { name, source, figures, unknown: None, remarks: Vec::new(), hints: Vec::new() };
-        serde_json::to_value(scored).unwrap_or_default()
+        let (rows, time_unit) = (Some(Rows::default()), "ns");
+        let (unknown, remarks, hints) = (None, Vec::new(), Vec::new());
+        serde_json::to_value(Scored { name, source, figures, unknown, time_unit, rows, remarks, hints })
+            .unwrap_or_default()
     };
     let estimates: Vec<Value> = sources.iter().map(scored).collect();
     let one = estimates.first().cloned().unwrap_or_default();

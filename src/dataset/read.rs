@@ -13,9 +13,11 @@ use super::error::DatasetError;
 use super::manifest;
 use crate::geometry::{Attitude, Axes, Body, Vector};
 use crate::sensor::SensorKind;
+use crate::table::{Clock, Next, TICKS, Table, TableError, TimeColumn, TimeUnit, Wanted};
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// The attitudes of a dataset.
@@ -96,80 +98,89 @@ fn axes(file: &Path) -> Result<Axes, DatasetError> {
     })
 }
 
-/// `t_ns` and `N` columns of doubles of a CSV file, found by name, row by row.
+/// `t_ns` and `N` columns of doubles of a CSV file, found by name, row by row. A dataset is ours: what a stranger's table
+/// is forgiven is a mistake here.
 struct Columns<const N: usize> {
     file: PathBuf,
-    names: [String; N],
-    reader: csv::Reader<File>,
-    record: csv::StringRecord,
-    time: usize,
-    indices: [usize; N],
+    table: Table<BufReader<File>>,
+    wanted: Wanted<N>,
+    line: u64,
     last: Option<SimTime>,
 }
 
 impl<const N: usize> Columns<N> {
     fn open(file: &Path, names: [&str; N]) -> Result<Columns<N>, DatasetError> {
         let opened = File::open(file).map_err(DatasetError::io("read", file))?;
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).buffer_capacity(1 << 18).from_reader(opened);
-        let header = reader.headers().map_err(|error| unreadable(file, &error))?.clone();
+        let reader = BufReader::with_capacity(1 << 18, opened);
+        let table =
+            Table::open(&file.display().to_string(), reader).map_err(|error| unreadable(file, error))?;
         let find = |name: &str| {
-            header.iter().position(|column| column == name).ok_or_else(|| DatasetError::Content {
-                place: format!("{}:1", file.display()),
-                problem: format!(
-                    "has no column `{name}`; its columns are {}",
-                    Vec::from_iter(&header).join(", ")
-                ),
+            table.pick(name).filter(|_| table.has(name)).ok_or_else(|| DatasetError::Content {
+                place: table.place(),
+                problem: format!("has no column `{name}`; {}", table.told()),
             })
         };
-        let time = find("t_ns")?;
-        let mut indices = [0; N];
-        for (index, name) in indices.iter_mut().zip(names) {
-            *index = find(name)?;
+        let time = TimeColumn { column: find("t_ns")?, fine: None, unit: Some(TimeUnit::Ns) };
+        let mut columns = [0; N];
+        for (column, name) in columns.iter_mut().zip(names) {
+            *column = find(name)?;
         }
-        let (file, names) = (file.to_path_buf(), names.map(String::from));
-        Ok(Columns { file, names, reader, record: csv::StringRecord::new(), time, indices, last: None })
+        let wanted = Wanted::new(Clock::Column { time, assumed: None }, columns);
+        Ok(Columns { file: file.to_path_buf(), table, wanted, line: 0, last: None })
     }
 
     fn next(&mut self) -> Result<Option<(SimTime, [f64; N])>, DatasetError> {
-        if !self.reader.read_record(&mut self.record).map_err(|error| unreadable(&self.file, &error))? {
-            return Ok(None);
-        }
-        let text = &self.record[self.time];
-        let t = text
-            .parse()
-            .map(SimTime)
-            .map_err(|_| self.wrong("t_ns", format!("`{text}` is no whole number of nanoseconds")))?;
+        let row = match self.table.next(&self.wanted).map_err(|error| unreadable(&self.file, error))? {
+            Next::End => return Ok(None),
+            Next::Row(row) => row,
+            Next::Mistake(mistake) => {
+                let column = mistake.column.map_or(String::new(), |column| format!(", column {column}"));
+                return Err(DatasetError::Content {
+                    place: format!("{}:{}{column}", self.file.display(), mistake.line),
+                    problem: mistake.what,
+                });
+            }
+        };
+        self.line = row.line;
+        let whole =
+            row.ticks.filter(|ticks| ticks % TICKS == 0).and_then(|ticks| i64::try_from(ticks / TICKS).ok());
+        let t = whole.map(SimTime).ok_or_else(|| {
+            let text = self.table.cell(self.time());
+            self.wrong("t_ns", format!("`{text}` is no whole number of nanoseconds"))
+        })?;
         if let Some(last) = self.last.filter(|&last| t <= last) {
             return Err(
                 self.wrong("t_ns", format!("{} is not after {}, the time of the row before", t.0, last.0))
             );
         }
         self.last = Some(t);
-        let mut values = [0.0; N];
-        for ((value, &index), name) in values.iter_mut().zip(&self.indices).zip(&self.names) {
-            let text = &self.record[index];
-            let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-            *value = number.ok_or_else(|| self.wrong(name, format!("`{text}` is no number")))?;
+        if let Some(place) = row.values.iter().position(|value| value.is_nan()) {
+            let column = self.wanted.columns[place];
+            let (name, text) = (self.table.called(column), self.table.cell(column));
+            return Err(self.wrong(&name, format!("`{text}` is no number")));
         }
-        Ok(Some((t, values)))
+        Ok(Some((t, row.values)))
+    }
+
+    fn time(&self) -> usize {
+        match self.wanted.clock {
+            Clock::Column { time, .. } => time.column,
+            Clock::Rate(_) => 0,
+        }
     }
 
     /// A mistake in the row just read.
     fn wrong(&self, column: &str, problem: String) -> DatasetError {
-        let line = self.record.position().map_or(0, csv::Position::line);
-        DatasetError::Content { place: format!("{}:{line}, column {column}", self.file.display()), problem }
+        DatasetError::Content {
+            place: format!("{}:{}, column {column}", self.file.display(), self.line),
+            problem,
+        }
     }
 }
 
-fn unreadable(file: &Path, error: &csv::Error) -> DatasetError {
-    let line = error.position().map_or(String::new(), |position| format!(":{}", position.line()));
-    let problem = match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("the row has {len} columns, the header {expected_len}")
-        }
-        csv::ErrorKind::Utf8 { .. } => "the row is no text".to_string(),
-        _ => error.to_string(),
-    };
-    DatasetError::Content { place: format!("{}{line}", file.display()), problem }
+fn unreadable(file: &Path, error: TableError) -> DatasetError {
+    match error {
+        TableError::Io { source, .. } => DatasetError::io("read", file)(source),
+        other => DatasetError::Content { place: file.display().to_string(), problem: other.in_short() },
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! An attitude log is met exactly at its rows, with angular rate and angular acceleration continuous between
 //! ([`attitude`]); a rate log is interpolated smoothly and integrated ([`rate`]). Rows that are missing or jump are
-//! [reported](survey). The log is in the scene's axes. Its first row is the motion's start; after its last the
+//! [reported](survey), and so are rows that are left out. The log is in the scene's axes. Its first row is the motion's start; after its last the
 //! vehicle holds.
 
 mod attitude;
@@ -16,8 +16,9 @@ use super::{Built, Context, MotionKind};
 use crate::geometry::{Attitude, Axes, Euler};
 use crate::keys::{Columns, Key, KeyError, Takes, Values};
 use crate::quantity::Kind;
+use crate::table::Table;
 use attitude::AttitudeLog;
-use columns::Known;
+use columns::Turns;
 use glam::{DQuat, DVec3};
 use log::Log;
 use rate::RateLog;
@@ -30,31 +31,37 @@ pub(super) static KIND: MotionKind = MotionKind {
             name: "file",
             takes: Takes::File,
             default: None,
-            about: "the log: columns under a header, separated by commas, semicolons, tabs or spaces; lines with # are comments",
+            about: "the log: columns under a header, separated by commas, semicolons, tabs or spaces, or a TUM trajectory; lines with # are comments",
         },
         Key {
             name: "time",
             takes: Takes::Columns(Columns { count: 1, kind: Some(Kind::TIME) }),
             default: None,
-            about: "its column of time (without this key t_ns or t_s)",
+            about: "its column of time by name or by number from 1 (without this key t_ns, t_s, time, timestamp, …)",
+        },
+        Key {
+            name: "rate",
+            takes: Takes::Scalar(Kind::RATE),
+            default: None,
+            about: "instead: how often a row comes, of a log without a column of time",
         },
         Key {
             name: "quaternion",
             takes: Takes::Columns(Columns { count: 4, kind: None }),
             default: None,
-            about: "its columns of attitude, w first, body to nav (without this key qw, qx, qy, qz)",
+            about: "its columns of attitude, w first, body to nav (without this key qw, qx, qy, qz, q_RS_w, …, q[0], …)",
         },
         Key {
             name: "euler",
             takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGLE) }),
             default: None,
-            about: "instead: roll, pitch, yaw (without this key roll_rad, pitch_rad, yaw_rad)",
+            about: "instead: roll, pitch, yaw (without this key roll_rad, …, roll [deg], …)",
         },
         Key {
             name: "angular_rate",
             takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGULAR_RATE) }),
             default: None,
-            about: "instead: about body x, y, z (without this key wx_rad_s, wy_rad_s, wz_rad_s or x_rad_s, y_rad_s, z_rad_s)",
+            about: "instead: about body x, y, z (without this key wx_rad_s, …, x_rad_s, …, w_RS_S_x [rad s^-1], …)",
         },
         Key {
             name: "align",
@@ -67,14 +74,6 @@ pub(super) static KIND: MotionKind = MotionKind {
     build,
 };
 
-const TIME: Known = Known { key: "time", sets: &[(&["t_ns"], 1e-9), (&["t_s"], 1.0)] };
-const QUATERNION: Known = Known { key: "quaternion", sets: &[(&["qw", "qx", "qy", "qz"], 1.0)] };
-const EULER: Known = Known { key: "euler", sets: &[(&["roll_rad", "pitch_rad", "yaw_rad"], 1.0)] };
-const ANGULAR_RATE: Known = Known {
-    key: "angular_rate",
-    sets: &[(&["wx_rad_s", "wy_rad_s", "wz_rad_s"], 1.0), (&["x_rad_s", "y_rad_s", "z_rad_s"], 1.0)],
-};
-
 /// An attitude log that begins nearer than this (rad) to where the vehicle is begins there.
 const AGREE: f64 = 1e-6;
 
@@ -82,13 +81,23 @@ fn build(values: &Values, context: &Context) -> Built {
     let Some(file) = values.file("file") else {
         return Err(KeyError::new("kind", "`replay` needs a `file`, such as file = \"log.csv\""));
     };
-    let header = columns::header(file)?;
-    let time = header.time(values, &TIME)?;
-    let group = header.one_of(values, &[&QUATERNION, &EULER, &ANGULAR_RATE])?;
-    match group.key {
-        "quaternion" => attitudes(Log::read(&header, &time, &group)?, context, values, quaternion),
-        "euler" => attitudes(Log::read(&header, &time, &group)?, context, values, euler),
-        _ => rates(Log::read(&header, &time, &group)?, context),
+    let table = Table::open(&file.name, file.contents.as_bytes()).map_err(columns::at("file"))?;
+    let mut warnings = Vec::new();
+    let when = columns::when(&table, values)?;
+    let turns = columns::turns(&table, values, &mut warnings)?;
+    let is_zero = |q: &[f64; 4]| quaternion(*q).length() < 1e-9;
+    match turns {
+        Turns::Quaternion(columns) => {
+            let log = Log::read(table, &when, (columns, 1.0), is_zero)?;
+            attitudes(log, context, values, warnings, quaternion)
+        }
+        Turns::Euler(columns, unit) => {
+            let log = Log::read(table, &when, (columns, unit), |_| false)?;
+            attitudes(log, context, values, warnings, euler)
+        }
+        Turns::Rate(columns, unit) => {
+            rates(Log::read(table, &when, (columns, unit), |_| false)?, context, warnings)
+        }
     }
 }
 
@@ -103,8 +112,14 @@ fn euler([roll, pitch, yaw]: [f64; 3]) -> DQuat {
     Euler { roll, pitch, yaw }.to_quat()
 }
 
-fn attitudes<const N: usize>(log: Log<N>, context: &Context, values: &Values, to_quat: ToQuat<N>) -> Built {
-    let mut warnings = Vec::new();
+fn attitudes<const N: usize>(
+    log: Log<N>,
+    context: &Context,
+    values: &Values,
+    mut warnings: Vec<String>,
+    to_quat: ToQuat<N>,
+) -> Built {
+    warnings.extend_from_slice(&log.warnings);
     let mut knots = unit_quaternions(&log, context.axes, to_quat, &mut warnings)?;
     let first = Attitude::from_quat(knots[0]);
     let aligned = values.word("align") == Some("start");
@@ -167,10 +182,11 @@ fn unit_quaternions<const N: usize>(
     }
 }
 
-fn rates(log: Log<3>, context: &Context) -> Built {
+fn rates(log: Log<3>, context: &Context, mut warnings: Vec<String>) -> Built {
     let rates: Vec<DVec3> =
         log.rows.iter().map(|row| context.axes.body_in(DVec3::from_array(*row)).v).collect();
-    let mut warnings: Vec<_> = survey::gaps(&log).collect();
+    warnings.extend_from_slice(&log.warnings);
+    warnings.extend(survey::gaps(&log));
     warnings.extend(survey::rate_jumps(&log, &rates));
     let place = log.place(0);
     match RateLog::new(log.grid, &rates, warnings) {

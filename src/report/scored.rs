@@ -1,6 +1,7 @@
 //! Estimates against the truth, side by side.
 
 use crate::score::Figures;
+use crate::table::Rows;
 use serde::Serialize;
 
 /// What `score` found, one JSON object.
@@ -14,6 +15,10 @@ pub struct ScoreReport {
     pub failed: Vec<String>,
     /// What the estimates were set against.
     pub truth: String,
+    /// The unit of its times.
+    pub truth_time_unit: &'static str,
+    /// What the user should know of how it was read.
+    pub truth_remarks: Vec<String>,
     /// What was taken out of each: `none`, its constant `heading`, or constant rotations of the `world` or of both
     /// `frames`.
     pub align: String,
@@ -36,6 +41,11 @@ pub struct Scored {
     /// Why it cannot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unknown: Option<String>,
+    /// The unit of its times.
+    pub time_unit: &'static str,
+    /// How many rows of a file were read, and how many are left out and why.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rows: Option<Rows>,
     /// What the user should know of how it was read.
     pub remarks: Vec<String>,
     /// What explains its error, or would help.

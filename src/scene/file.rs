@@ -2,6 +2,7 @@
 
 use super::section::Section;
 use crate::keys::Text;
+use crate::table::{is_text, kind_of};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -58,13 +59,26 @@ impl Section<'_> {
                 return None;
             }
         };
-        let contents = String::from_utf8(bytes)
-            .map_err(|error| {
-                let line =
-                    error.as_bytes()[..error.utf8_error().valid_up_to()].split(|b| *b == b'\n').count();
+        if let Some(kind) = kind_of(&bytes) {
+            self.mistake(
+                key,
+                kind.refusal(&name, "no scene reads: it reads tables of text, such as CSV with a header"),
+            );
+            return None;
+        }
+        let contents = match String::from_utf8(bytes) {
+            Ok(contents) => contents,
+            // A degree sign of an older code is no reason to refuse a log.
+            Err(error) if is_text(error.as_bytes()) => {
+                error.as_bytes().iter().map(|byte| char::from(*byte)).collect()
+            }
+            Err(error) => {
+                let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+                let line = valid.split(|b| *b == b'\n').count();
                 self.mistake(key, format!("{name}:{line} is no text (UTF-8)"));
-            })
-            .ok()?;
+                return None;
+            }
+        };
         let extension = path.extension().map_or(String::new(), |text| format!(".{}", text.to_string_lossy()));
         let attached = Attached { name: self.path.replace('.', "-") + &extension, path, stamp };
         self.resolve(key, attached.name.clone());

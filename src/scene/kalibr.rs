@@ -8,6 +8,7 @@ use super::document::{Table, Value};
 use super::section::Section;
 use crate::sensor::SensorKind;
 use saphyr::{LoadableYamlNode, MarkedYaml};
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -66,8 +67,8 @@ fn read(section: &Section<'_>, kind: SensorKind) -> Result<Table, Vec<String>> {
     let keys = keys(kind).ok_or_else(|| one(format!("{shown}: a Kalibr file has no {kind}")))?;
     let text = fs::read_to_string(&path).map_err(|error| one(format!("cannot read {shown}: {error}")))?;
     section.reader.files.borrow_mut().push(path.clone());
-    let documents =
-        MarkedYaml::load_from_str(&text).map_err(|error| one(format!("{shown} is no YAML: {error}")))?;
+    let documents = MarkedYaml::load_from_str(&without_directive(&text))
+        .map_err(|error| one(format!("{shown} is no YAML: {error}")))?;
     // The file that Kalibr writes has all of it under `imu0`.
     let top = documents.first().map(|top| top.data.as_mapping_get("imu0").unwrap_or(top));
     let mut mistakes = Vec::new();
@@ -92,6 +93,17 @@ fn read(section: &Section<'_>, kind: SensorKind) -> Result<Table, Vec<String>> {
         return Err(mistakes);
     }
     Table::parse(&preset, name).map_err(|mistake| one(mistake.to_string()))
+}
+
+/// The text with OpenCV's directive made a comment: `%YAML:1.0`, which YAML has with a space and a line `---` behind it.
+fn without_directive(text: &str) -> Cow<'_, str> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let is_blank = |line: &&str| line.trim().is_empty() || line.trim_start().starts_with('#');
+    let directive = text.lines().find(|line| !is_blank(line)).filter(|line| line.starts_with("%YAML:"));
+    match directive {
+        Some(line) => text.replacen(line, &format!("# {line}"), 1).into(),
+        None => text.into(),
+    }
 }
 
 #[cfg(test)]
@@ -139,6 +151,24 @@ mod tests {
         let sigma =
             white_noise::sigma(&own.sensors[0].values, own.sensors[0].kind, own.sensors[0].rate).unwrap();
         assert!((sigma.x - 1f64.to_radians()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_file_with_the_directive_of_opencv_is_read() {
+        for head in [
+            "%YAML:1.0\n",
+            "\u{feff}%YAML:1.0\r\n\n",
+            "# by hand\n%YAML:1.0\n---\n",
+            "%YAML 1.2\n---\n",
+            "---\n",
+        ] {
+            let plan = plan(&format!("{head}{YAML}"), "").unwrap_or_else(|error| panic!("{head}: {error}"));
+            assert_eq!(plan.sensors[0].rate.as_hz(), 200.0, "{head}");
+        }
+        // The lines of mistakes are those of the file.
+        let bad = format!("%YAML:1.0\n{}", YAML.replace("3.4e-4", "-1"));
+        let said = plan(&bad, "").unwrap_err().to_string();
+        assert!(said.contains("imu.yaml:8: `gyroscope_noise_density` takes"), "{said}");
     }
 
     #[test]

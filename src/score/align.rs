@@ -44,7 +44,9 @@ impl Frames {
                 let turn = heading(pairs.map(|(q, truth)| q * truth.conjugate()));
                 Frames { world: DQuat::from_rotation_z(turn), ..Frames::SAME }
             }
-            Align::World => Frames { world: mean(pairs.map(|(q, truth)| q * truth.conjugate())), ..Frames::SAME },
+            Align::World => {
+                Frames { world: mean(pairs.map(|(q, truth)| q * truth.conjugate())), ..Frames::SAME }
+            }
             Align::Frames => both(pairs),
         }
     }

@@ -71,7 +71,11 @@ impl Bench<'_> {
     }
 
     /// Estimate and truth of a series whose times are `ahead`, where there is a truth.
-    fn pairs<'s>(&'s self, series: &'s Series, ahead: i64) -> impl Iterator<Item = (SimTime, DQuat, DQuat)> + Clone + 's {
+    fn pairs<'s>(
+        &'s self,
+        series: &'s Series,
+        ahead: i64,
+    ) -> impl Iterator<Item = (SimTime, DQuat, DQuat)> + Clone + 's {
         series.rows().filter_map(move |(t, q)| {
             let held = t.saturating_sub(ahead);
             Some((SimTime(held), q, self.at(held)?))
@@ -100,7 +104,12 @@ impl Bench<'_> {
     }
 
     /// Each estimate with its error.
-    pub fn rows<'s>(&'s self, series: &'s Series, ahead: i64, frames: Frames) -> impl Iterator<Item = Row> + 's {
+    pub fn rows<'s>(
+        &'s self,
+        series: &'s Series,
+        ahead: i64,
+        frames: Frames,
+    ) -> impl Iterator<Item = Row> + 's {
         self.pairs(series, ahead).map(move |(t, q, truth)| {
             let attitude = Attitude::from_quat(frames.undone(q));
             let truth = Attitude::from_quat(truth);
@@ -123,7 +132,8 @@ impl Bench<'_> {
     fn angles(&self, row: &Row) -> [f64; 3] {
         let of = |attitude: Attitude| Euler::from_quat(self.options.axes.attitude_out(attitude));
         let (a, b) = (of(row.attitude), of(row.truth));
-        [a.roll - b.roll, a.pitch - b.pitch, a.yaw - b.yaw].map(|angle| angle - TAU * libm::round(angle / TAU))
+        [a.roll - b.roll, a.pitch - b.pitch, a.yaw - b.yaw]
+            .map(|angle| angle - TAU * libm::round(angle / TAU))
     }
 }
 

@@ -46,7 +46,10 @@ fn pirouette(t: f64) -> Attitude {
 fn cone(t: f64) -> Attitude {
     let size = 0.087 * (step(t, 5.0, 2.0) - step(t, 30.0, 6.0));
     let turn = TAU * 2.0 * t;
-    Attitude::from_quat(exp(DVec3::new(libm::cos(turn), libm::sin(turn), 0.0) * size) * exp(DVec3::Z * 0.4 * step(t, 15.0, 8.0)))
+    Attitude::from_quat(
+        exp(DVec3::new(libm::cos(turn), libm::sin(turn), 0.0) * size)
+            * exp(DVec3::Z * 0.4 * step(t, 15.0, 8.0)),
+    )
 }
 
 /// Vibration at 37 Hz under slow tilts.
@@ -98,13 +101,21 @@ fn make(motion: Motion, seed: u64, offset: Option<f64>) -> Made {
     let waves: Vec<[f64; 5]> = (0..4)
         .map(|_| {
             let period = random.random_range(5.0..30.0);
-            [period, random.random_range(0.0..TAU), normal(&mut random), normal(&mut random), normal(&mut random)]
+            [
+                period,
+                random.random_range(0.0..TAU),
+                normal(&mut random),
+                normal(&mut random),
+                normal(&mut random),
+            ]
         })
         .collect();
     // Four waves of so many normal numbers have this root mean square.
-    let size = wander / libm::sqrt(waves.iter().map(|w| (w[2] * w[2] + w[3] * w[3] + w[4] * w[4]) / 2.0).sum::<f64>());
+    let size = wander
+        / libm::sqrt(waves.iter().map(|w| (w[2] * w[2] + w[3] * w[3] + w[4] * w[4]) / 2.0).sum::<f64>());
     let drift = |t: f64| -> DVec3 {
-        waves.iter().map(|w| DVec3::new(w[2], w[3], w[4]) * libm::sin(TAU * t / w[0] + w[1])).sum::<DVec3>() * size
+        waves.iter().map(|w| DVec3::new(w[2], w[3], w[4]) * libm::sin(TAU * t / w[0] + w[1])).sum::<DVec3>()
+            * size
     };
     let lost: Vec<(f64, f64)> = (0..random.random_range(0..4))
         .map(|_| {
@@ -173,7 +184,8 @@ fn seeds() -> u64 {
 #[test]
 fn an_offset_is_right_within_5_ms_or_declared_unknown() {
     let seeds = seeds();
-    let cases: Vec<(usize, u64)> = (0..MOTIONS.len()).flat_map(|m| (0..seeds).map(move |seed| (m, seed))).collect();
+    let cases: Vec<(usize, u64)> =
+        (0..MOTIONS.len()).flat_map(|m| (0..seeds).map(move |seed| (m, seed))).collect();
     let run = |cases: &[(usize, u64)]| -> Vec<(usize, u64, Result<Option<f64>, String>)> {
         cases.iter().map(|&(m, seed)| (m, seed, outcome(MOTIONS[m].1, seed))).collect()
     };
@@ -184,7 +196,8 @@ fn an_offset_is_right_within_5_ms_or_declared_unknown() {
         found.extend(other.join().unwrap());
         found
     });
-    let wrong = found.iter().filter_map(|(m, seed, found)| Some((MOTIONS[*m].0, seed, found.as_ref().err()?)));
+    let wrong =
+        found.iter().filter_map(|(m, seed, found)| Some((MOTIONS[*m].0, seed, found.as_ref().err()?)));
     let wrong: Vec<String> = wrong.map(|(name, seed, why)| format!("{name} {seed}: {why}")).collect();
     assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
     for (m, (name, _)) in MOTIONS.iter().enumerate() {
@@ -216,13 +229,15 @@ fn a_rest_that_is_known_tells_where_a_motion_that_repeats_begins() {
         }
     }
     // Begun long before, it rests where the truth does, and there is no doubt.
-    let made = (0..200).map(|seed| make(rocking, seed, Some(17.0))).find(|made| {
-        made.series.times()[0] < 0 && made.rms_deg < 60.0
-    });
+    let made = (0..200)
+        .map(|seed| make(rocking, seed, Some(17.0)))
+        .find(|made| made.series.times()[0] < 0 && made.rms_deg < 60.0);
     let made = made.unwrap();
     let rest = Options { rest: SimTime(25_000_000_000), ..options() };
     let judged = judged(rocking, &made.series, &rest).unwrap();
-    assert!(judged.figures.clock_certain && (judged.figures.clock_offset_s.unwrap() - made.ahead).abs() < 0.005);
+    assert!(
+        judged.figures.clock_certain && (judged.figures.clock_offset_s.unwrap() - made.ahead).abs() < 0.005
+    );
 }
 
 /// Negative controls.
@@ -233,7 +248,11 @@ fn of_another_flight_no_clock_is_told() {
             for seed in 0..6 {
                 let made = make(MOTIONS[n].1, seed, Some(31.0));
                 let found = judged(*motion, &made.series, &options());
-                assert!(matches!(found, Err(Unjudged::When(_))), "{other} as {name}, {seed}: {:?}", found.unwrap().figures);
+                assert!(
+                    matches!(found, Err(Unjudged::When(_))),
+                    "{other} as {name}, {seed}: {:?}",
+                    found.unwrap().figures
+                );
             }
         }
     }
@@ -243,7 +262,8 @@ fn of_another_flight_no_clock_is_told() {
 fn on_the_truths_own_clock_nothing_is_taken_out_and_both_figures_are_told() {
     for (name, motion) in MOTIONS.iter().filter(|(name, _)| *name != "vibration") {
         // Exact but late by 120 ms, with the truth's own beginning and end.
-        let rows = (0..=4000).map(|k| k as f64 * 0.01).map(|t| ((t * 1e9) as i64, motion((t - 0.12).max(0.0))));
+        let rows =
+            (0..=4000).map(|k| k as f64 * 0.01).map(|t| ((t * 1e9) as i64, motion((t - 0.12).max(0.0))));
         let series = Series::new(rows);
         let figures = judged(*motion, &series, &options()).unwrap().figures;
         let given = judged(*motion, &series, &Options { clock: Clock::Truth, ..options() }).unwrap().figures;
@@ -279,7 +299,9 @@ fn what_an_estimate_covers_is_told() {
 #[test]
 fn a_turned_world_and_body_are_found_and_named() {
     let (world, body) = (exp(DVec3::new(0.1, 0.2, 0.6)), exp(DVec3::new(0.0, 0.17, 0.0)));
-    let rows = (0..2000).map(|k| k as f64 * 0.02).map(|t| ((t * 1e9) as i64 + 300_000_000_000, Attitude::from_quat(world * flight(t).q * body)));
+    let rows = (0..2000)
+        .map(|k| k as f64 * 0.02)
+        .map(|t| ((t * 1e9) as i64 + 300_000_000_000, Attitude::from_quat(world * flight(t).q * body)));
     let series = Series::new(rows);
     let given = judged(flight, &series, &options()).unwrap();
     assert!(given.figures.errors.rms_deg > 20.0 && given.figures.clock_certain, "{:?}", given.figures);

@@ -114,7 +114,11 @@ impl Transform {
     fn new(least: usize) -> Transform {
         let length = least.next_power_of_two();
         let mut planner = FftPlanner::new();
-        Transform { length, forward: planner.plan_fft_forward(length), inverse: planner.plan_fft_inverse(length) }
+        Transform {
+            length,
+            forward: planner.plan_fft_forward(length),
+            inverse: planner.plan_fft_inverse(length),
+        }
     }
 
     fn spectrum(&self, values: impl Iterator<Item = f64>) -> Vec<Complex64> {

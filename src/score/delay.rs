@@ -155,8 +155,7 @@ impl Pairs {
 
     /// The size of a residual beyond which it is a jump, rad/s: so many times what nine of ten keep to.
     fn most(&self, truth: At<'_>, delay: i64) -> f64 {
-        let mut sizes: Vec<f64> =
-            self.residuals(truth, delay).iter().flatten().map(|r| r.length()).collect();
+        let mut sizes: Vec<f64> = self.residuals(truth, delay).iter().flatten().map(|r| r.length()).collect();
         let ninth = sizes.len() * 9 / 10;
         if sizes.is_empty() {
             return f64::INFINITY;
@@ -263,7 +262,14 @@ fn golden(window: Range<i64>, cost: impl Fn(i64) -> f64) -> i64 {
 ///
 /// Every `step` ns is looked at first: where other dips are nearly as deep, as vibration has them a period apart, the
 /// delay is no more certain than they are near.
-pub(super) fn near(grid: &Sampled, exact: At<'_>, series: &Series, window: &Range<i64>, step: i64, free: bool) -> Fit {
+pub(super) fn near(
+    grid: &Sampled,
+    exact: At<'_>,
+    series: &Series,
+    window: &Range<i64>,
+    step: i64,
+    free: bool,
+) -> Fit {
     let on_grid: At<'_> = &|t| grid.at(t);
     let found = |pairs: &Pairs, window: Range<i64>| {
         let delay = pairs.refine(on_grid, window);
@@ -285,7 +291,11 @@ pub(super) fn near(grid: &Sampled, exact: At<'_>, series: &Series, window: &Rang
         a.cmp(&b).then(x.total_cmp(&y))
     });
     let Some((span, rival, fit)) = best else {
-        return Fit { delay: i64::midpoint(window.start, window.end), error: f64::INFINITY, doubt: Some(TOO_EVEN) };
+        return Fit {
+            delay: i64::midpoint(window.start, window.end),
+            error: f64::INFINITY,
+            doubt: Some(TOO_EVEN),
+        };
     };
     let pairs = Pairs::new(series, span, free, MANY);
     let mut fit = found(&pairs, fit.delay - step..fit.delay + step);
@@ -308,12 +318,15 @@ const NOTHING: f64 = 1e-4;
 impl Pairs {
     /// The deepest dip on a grid of delays, and how far away the furthest that is nearly as deep is, ns.
     fn deepest(&self, truth: At<'_>, window: &Range<i64>, step: i64) -> Option<(i64, f64)> {
-        let delays: Vec<i64> = (0..=(window.end - window.start) / step).map(|i| window.start + i * step).collect();
+        let delays: Vec<i64> =
+            (0..=(window.end - window.start) / step).map(|i| window.start + i * step).collect();
         let most = delays.iter().step_by(8).map(|&delay| self.count(truth, delay)).max()?;
         let cap = self.cap(truth, window);
         let cost = |&delay: &i64| self.cost(truth, delay, cap, most).unwrap_or(f64::INFINITY);
         let costs: Vec<f64> = delays.iter().map(cost).collect();
-        let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).filter(|&i| costs[i].is_finite())?;
+        let best = (0..costs.len())
+            .min_by(|&a, &b| costs[a].total_cmp(&costs[b]))
+            .filter(|&i| costs[i].is_finite())?;
         let at = |i: usize| costs.get(i).copied().unwrap_or(f64::INFINITY);
         let is_dip = |i: &usize| at(*i) <= at(*i + 1) && (*i == 0 || at(*i) <= at(*i - 1));
         let deep = RIVAL * (costs[best] + NOTHING * NOTHING);
@@ -341,7 +354,13 @@ fn limited(grid: &Sampled, span: i64, free: bool) -> i64 {
 
 /// The delay within `window` (ns), looked for every `step` ns on the grid and then between: of dips that are as
 /// deep, as a motion that repeats has them, the one nearest to none.
-pub(super) fn within(grid: &Sampled, exact: At<'_>, series: &Series, window: Range<i64>, step: i64) -> Option<Fit> {
+pub(super) fn within(
+    grid: &Sampled,
+    exact: At<'_>,
+    series: &Series,
+    window: Range<i64>,
+    step: i64,
+) -> Option<Fit> {
     let on_grid: At<'_> = &|t| grid.at(t);
     let pairs = Pairs::new(series, SPANS[2], false, 800);
     let count = (window.end - window.start) / step;

@@ -147,7 +147,9 @@ impl Tally {
     pub fn add(&mut self, error: &AttitudeError, angles: [f64; 3]) {
         let [roll, pitch, yaw] = angles;
         self.count += 1;
-        for (i, part) in [error.total, error.inclination, error.heading, roll, pitch, yaw].into_iter().enumerate() {
+        for (i, part) in
+            [error.total, error.inclination, error.heading, roll, pitch, yaw].into_iter().enumerate()
+        {
             self.squares[i] += part * part;
             self.most[i] = self.most[i].max(part.abs());
         }

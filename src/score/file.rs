@@ -3,24 +3,40 @@
 mod table;
 mod ulog;
 
-use super::{Timed, judge::Stamp};
-use crate::geometry::{Attitude, Axes};
-use crate::time::SimTime;
+use super::Packed;
+use crate::geometry::Axes;
+use crate::table::{Choice, Rows, TableError, Times, is_text, kind_of};
 use glam::DQuat;
-use std::io;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
+
+/// How a file is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// The axes in which a table or a trajectory is written.
+    pub axes: Axes,
+    /// The columns of tables whose own names say nothing, or that have columns of these names.
+    pub columns: Choice,
+}
 
 /// What a file holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recorded {
-    /// Its estimates in the order of the file, which is that of time.
-    pub estimates: Vec<Timed>,
+    /// Its attitudes, body to nav, in the order of the file.
+    pub attitudes: Vec<Packed>,
+    /// Their times, in order but for the breaks; the unit where the file says it.
+    pub times: Times,
+    /// What messages call the times: the name of the column.
+    pub time_name: String,
     /// The axes in which it is written.
     pub axes: Axes,
     /// Other ways to read the same columns, each with what it would mean.
-    pub others: Vec<(&'static str, Vec<Attitude>)>,
+    pub others: Vec<(&'static str, Vec<Packed>)>,
     /// What the user should know of how it was read.
     pub remarks: Vec<String>,
+    /// How many rows there were, and how many are left out.
+    pub rows: Rows,
 }
 
 /// Why a file could not be read.
@@ -40,28 +56,53 @@ pub enum FileError {
     Content(String),
 }
 
+impl From<TableError> for FileError {
+    fn from(error: TableError) -> FileError {
+        FileError::Content(error.to_string())
+    }
+}
+
+/// Who does not read a file of another kind, and what it reads.
+const READER: &str = "`score` does not read: it reads tables with a header, TUM trajectories and PX4 ULogs";
+/// As many first bytes tell what a file is.
+const HEAD: u64 = 4096;
+
 /// Reads estimates. A table or a trajectory is in `axes`; a ULog says of itself that it is in NED-FRD.
 ///
 /// # Errors
-/// No such file; no columns of time and attitude; numbers that are none, quaternions that are no rotations, times out
-/// of order.
+/// As of [`read_as`].
 pub fn read(path: &Path, axes: Axes) -> Result<Recorded, FileError> {
-    let bytes = std::fs::read(path).map_err(|source| FileError::Io { path: path.to_path_buf(), source })?;
-    if bytes.starts_with(ulog::MAGIC) {
-        return ulog::read(path);
-    }
-    let Ok(text) = String::from_utf8(bytes) else {
-        return Err(FileError::Content(format!(
-            "{} is neither text nor a ULog: an estimate is a table with a header, a TUM trajectory or a ULog",
-            path.display()
-        )));
-    };
-    table::read(&path.display().to_string(), &text, axes)
+    read_as(path, &Reading { axes, ..Reading::default() })
 }
 
-/// One estimate of a file; its only time is the one beside it.
-fn timed(ns: i64, attitude: Attitude) -> Timed {
-    Timed { arrival: SimTime(ns), stamp: Stamp::Arrival, attitude }
+/// Reads estimates. Rows without an attitude, and those out of order, are left out, counted in [`Recorded::rows`] and
+/// told in [`Recorded::remarks`].
+///
+/// # Errors
+/// No such file; one of another kind; no columns of time and attitude; words where numbers should be, quaternions that
+/// are no rotations; not a row that can be used.
+pub fn read_as(path: &Path, reading: &Reading) -> Result<Recorded, FileError> {
+    let refused = |source| FileError::Io { path: path.to_path_buf(), source };
+    let name = path.display().to_string();
+    let mut file = File::open(path).map_err(refused)?;
+    let mut head = Vec::new();
+    file.by_ref().take(HEAD).read_to_end(&mut head).map_err(refused)?;
+    if head.starts_with(ulog::MAGIC) {
+        return ulog::read(path);
+    }
+    if let Some(kind) = kind_of(&head) {
+        return Err(FileError::Content(kind.refusal(&name, READER)));
+    }
+    if !is_text(&head) {
+        return Err(FileError::Content(format!(
+            "{name} is neither text nor a ULog: an estimate is a table with a header, a TUM trajectory or a ULog"
+        )));
+    }
+    // What is no plain file cannot be begun anew; its beginning is at hand.
+    match file.rewind() {
+        Ok(()) => table::read(&name, BufReader::with_capacity(1 << 18, file), reading),
+        Err(_) => table::read(&name, BufReader::new(io::Cursor::new(head).chain(file)), reading),
+    }
 }
 
 /// Why four numbers are no rotation.

@@ -187,7 +187,16 @@ pub fn judge_series(
         turned = turned_frames(&bench, &series, ahead, figures.errors.rms_deg);
     }
     drop((bench, undone));
-    Ok(Judged { figures, note: placed.note, turned, held: Vec::new(), options: *options, ahead, frames, series })
+    Ok(Judged {
+        figures,
+        note: placed.note,
+        turned,
+        held: Vec::new(),
+        options: *options,
+        ahead,
+        frames,
+        series,
+    })
 }
 
 /// The figures, at how much the times are ahead in them, and what was taken out.
@@ -217,10 +226,8 @@ fn figures(
     let takes_out = bench.options.delay == Delay::TakeOut && without.is_some();
     let Some(main) = (if takes_out { without.map(|(it, _)| it) } else { given }) else { return Ok(None) };
     let ((errors, samples, coverage), mut ahead, mut frames) = main;
-    let fitted = without.filter(|_| !takes_out && !is_echoed).map(|(((errors, ..), delay, _), error)| Fitted {
-        delay_ms: delay as f64 * 1e-6,
-        delay_std_ms: error.map(|ns| ns * 1e-6),
-        errors,
+    let fitted = without.filter(|_| !takes_out && !is_echoed).map(|(((errors, ..), delay, _), error)| {
+        Fitted { delay_ms: delay as f64 * 1e-6, delay_std_ms: error.map(|ns| ns * 1e-6), errors }
     });
     if let (Delay::Fit | Delay::Given(_), Some(((_, delay, without), _))) = (bench.options.delay, without) {
         (ahead, frames) = (delay, without);
@@ -257,7 +264,8 @@ fn undoings<'a>(series: &'a Series, others: Readings<'a>, axes: Axes) -> Vec<Und
     let others = others.iter().filter(|(_, other)| other.len() == series.len());
     let others = others.map(|(name, other)| Undone { name, thinned: Box::new(|count| other.thinned(count)) });
     let mistakes = MISTAKES.iter().map(move |mistake| {
-        let undo = move |q: DQuat| axes.attitude_in((mistake.undo)(axes.attitude_out(Attitude::from_quat(q)))).q;
+        let undo =
+            move |q: DQuat| axes.attitude_in((mistake.undo)(axes.attitude_out(Attitude::from_quat(q)))).q;
         Undone { name: mistake.name, thinned: Box::new(move |count| series.thinned(count).map(undo)) }
     });
     others.chain(mistakes).collect()

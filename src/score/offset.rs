@@ -147,7 +147,9 @@ fn of_sums(sums: &Sums, truth: &Rates, estimate: &Rates, free: bool) -> Option<M
     let nats = tells(best) * step as f64 / STEP as f64;
     let doubt = match () {
         () if truth.fastest() < LEAST_RATE => Some(Doubt::TooEven),
-        () if here.share() >= LEAST_SHARE && (lobe.end - lobe.start) as i64 * step > WIDEST => Some(Doubt::TooEven),
+        () if here.share() >= LEAST_SHARE && (lobe.end - lobe.start) as i64 * step > WIDEST => {
+            Some(Doubt::TooEven)
+        }
         () if nats < LEAST_INFORMATION || here.share() < LEAST_SHARE => Some(Doubt::Unlike),
         () if !rivals.is_empty() => Some(Doubt::Repeats),
         () => None,

@@ -13,7 +13,7 @@ const STEPS: f64 = ((1u64 << (BITS - 1)) - 1) as f64;
 /// A rotation as its three smaller components, 42 bits each, and which one is left out: right to 3·10⁻¹³ rad. The
 /// sign of the quaternion, which says nothing of the rotation, is not kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Packed(u128);
+pub struct Packed(u128);
 
 impl Packed {
     /// Of a quaternion of length 1.
@@ -70,7 +70,9 @@ mod tests {
     #[test]
     fn right_angles_and_ties_come_back() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        for c in [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0], [half, -half, 0.0, 0.0], [0.5, -0.5, 0.5, -0.5]] {
+        for c in
+            [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.0], [half, -half, 0.0, 0.0], [0.5, -0.5, 0.5, -0.5]]
+        {
             let q = DQuat::from_array(c);
             assert!(angle_between(Packed::new(q).quat(), q) < 1e-12, "{c:?}");
         }

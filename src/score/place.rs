@@ -149,11 +149,7 @@ fn settle(bench: &Bench<'_>, series: &Series, found: &Match) -> Result<Placed, S
         placed.note = Some(format!("{around}; that changes the figures by less than 3 %"));
         return Ok(placed);
     }
-    Err(format!(
-        "{around}: that leaves {:.3} to {:.3} deg RMS",
-        least.to_degrees(),
-        most.to_degrees()
-    ))
+    Err(format!("{around}: that leaves {:.3} to {:.3} deg RMS", least.to_degrees(), most.to_degrees()))
 }
 
 /// The match that is clear once a mistake is undone, where that also explains the error.
@@ -184,7 +180,8 @@ fn indifferent(bench: &Bench<'_>, series: &Series, found: Option<&Match>) -> Res
     };
     let (least, most) = spread(bench, &thin, offsets.iter().copied());
     if !offsets.is_empty() && least.is_finite() && is_alike(least, most) {
-        let note = "its clock is not known, but whatever it is the figures are the same within 3 %".to_string();
+        let note =
+            "its clock is not known, but whatever it is the figures are the same within 3 %".to_string();
         let ahead = offsets[0];
         return Ok(Placed { other: true, ahead, error: None, certain: false, note: Some(note), delay: None });
     }
@@ -202,7 +199,10 @@ fn why(found: Option<&Match>, least: f64, most: f64) -> String {
             let shown: Vec<_> = shown.map(|offset| format!("{:.2} s", seconds(offset))).collect();
             let more = (found.rivals.len() + 1).saturating_sub(shown.len());
             let more = if more > 0 { format!(" or {more} more") } else { String::new() };
-            format!("the motion repeats, so its clock may be {}{more} ahead of the truth's{range}", shown.join(", "))
+            format!(
+                "the motion repeats, so its clock may be {}{more} ahead of the truth's{range}",
+                shown.join(", ")
+            )
         }
         Some(found) if found.doubt == Some(Doubt::Unlike) => {
             format!("at no offset of its clock does it follow the truth's motion{range}")

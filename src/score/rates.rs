@@ -65,7 +65,9 @@ struct Edges {
 impl Edges {
     /// The edges within a time, between whose ends both grew evenly from so much by so much.
     fn pass(&mut self, time: Range<i64>, turned: (DVec3, DVec3), unknown: (i64, i64)) {
-        let first = *self.first.get_or_insert(time.start.div_euclid(self.step) + i64::from(time.start.rem_euclid(self.step) > 0));
+        let first = *self.first.get_or_insert(
+            time.start.div_euclid(self.step) + i64::from(time.start.rem_euclid(self.step) > 0),
+        );
         loop {
             let edge = (first + self.turned.len() as i64) * self.step;
             if edge >= time.end {

@@ -3,6 +3,7 @@
 use super::packed::Packed;
 use crate::geometry::Attitude;
 use glam::DQuat;
+use std::ops::Range;
 
 /// Attitudes (body to nav) with their times (ns), in the order given: 24 bytes each.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,6 +18,16 @@ impl Series {
         let (times, attitudes) =
             rows.into_iter().map(|(t, attitude)| (t, Packed::new(attitude.q.normalize()))).unzip();
         Series { times, attitudes }
+    }
+
+    /// Of times (ns) and as many attitudes.
+    pub fn of(times: Vec<i64>, attitudes: Vec<Packed>) -> Series {
+        Series { times, attitudes }
+    }
+
+    /// Some of the rows.
+    pub fn part(&self, range: Range<usize>) -> Series {
+        Series { times: self.times[range.clone()].to_vec(), attitudes: self.attitudes[range].to_vec() }
     }
 
     /// How many there are.

@@ -56,8 +56,14 @@ fn a_delay_and_a_constant_error_come_back_beside_each_other() {
             assert_eq!(found.delay_known, DelayKnown::Estimated);
             // Within 2 µs, and what 2 µs of motion amount to.
             assert!(near(found.delay_ms.unwrap(), delay as f64 * 1e-6, 2e-3), "{delay} {error:?}: {found:?}");
-            assert!(near(found.errors.inclination_rms_deg, inclination, 1e-4), "{delay} {error:?}: {found:?}");
-            assert!(near(found.errors.heading_rms_deg, turn, 1e-4) && near(found.errors.heading_max_deg, turn, 1e-4));
+            assert!(
+                near(found.errors.inclination_rms_deg, inclination, 1e-4),
+                "{delay} {error:?}: {found:?}"
+            );
+            assert!(
+                near(found.errors.heading_rms_deg, turn, 1e-4)
+                    && near(found.errors.heading_max_deg, turn, 1e-4)
+            );
             assert!(
                 near(found.errors.rms_deg, inclination + turn, 1e-4)
                     && near(found.errors.max_deg, inclination + turn, 1e-4)
@@ -252,7 +258,8 @@ fn another_reading_is_recognised() {
     let estimates = mistaken(|_| DQuat::IDENTITY, 0.0);
     let series = |all: &[Timed]| Series::new(all.iter().map(|it| (it.arrival.0, it.attitude)));
     let right = series(&late(0, |_| DVec3::ZERO));
-    let found = judge_series(&known(flight), series(&estimates), &[("sideways", right)], &Options::default()).unwrap();
+    let found = judge_series(&known(flight), series(&estimates), &[("sideways", right)], &Options::default())
+        .unwrap();
     assert_eq!(found.figures.looks.as_deref(), Some("sideways"));
 }
 

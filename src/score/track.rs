@@ -23,7 +23,14 @@ impl Track {
     /// # Errors
     /// Fewer than two rows, or one that is not after the row before.
     pub fn new(rows: impl IntoIterator<Item = (SimTime, Attitude)>) -> Result<Track, TrackError> {
-        let rows = Series::new(rows.into_iter().map(|(t, attitude)| (t.0, attitude)));
+        Track::of(Series::new(rows.into_iter().map(|(t, attitude)| (t.0, attitude))))
+    }
+
+    /// The same of a series.
+    ///
+    /// # Errors
+    /// As of [`Track::new`].
+    pub fn of(rows: Series) -> Result<Track, TrackError> {
         if rows.len() < 2 {
             return Err(TrackError(format!("has {} rows, but a truth needs two or more", rows.len())));
         }
@@ -118,7 +125,8 @@ mod tests {
 
     #[test]
     fn a_table_out_of_order_is_refused_with_its_row() {
-        let rows = |times: &[i64]| times.iter().map(|&t| (SimTime(t), Attitude::IDENTITY)).collect::<Vec<_>>();
+        let rows =
+            |times: &[i64]| times.iter().map(|&t| (SimTime(t), Attitude::IDENTITY)).collect::<Vec<_>>();
         assert!(Track::new(rows(&[5])).unwrap_err().to_string().contains("two or more"));
         assert!(Track::new(rows(&[5, 6, 6])).unwrap_err().to_string().starts_with("row 3"));
     }

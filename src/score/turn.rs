@@ -27,10 +27,22 @@ impl Products {
         let size = self.0.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
         let w = xx + yy + zz + 1e-9 * size;
         let n = Matrix4::new(
-            w, yz - zy, zx - xz, xy - yx,
-            yz - zy, xx - yy - zz, xy + yx, zx + xz,
-            zx - xz, xy + yx, yy - xx - zz, yz + zy,
-            xy - yx, zx + xz, yz + zy, zz - xx - yy,
+            w,
+            yz - zy,
+            zx - xz,
+            xy - yx,
+            yz - zy,
+            xx - yy - zz,
+            xy + yx,
+            zx + xz,
+            zx - xz,
+            xy + yx,
+            yy - xx - zz,
+            yz + zy,
+            xy - yx,
+            zx + xz,
+            yz + zy,
+            zz - xx - yy,
         );
         let eigen = SymmetricEigen::new(n);
         let largest = eigen.eigenvalues.imax();

@@ -27,7 +27,14 @@ impl Drawn {
     /// Of an estimate of so many rows.
     pub fn new(name: &str, rows: u64) -> Drawn {
         let every = rows.div_ceil(POINTS as u64).max(1);
-        Drawn { name: name.into(), every, seen: 0, t: Vec::new(), attitudes: Vec::new(), errors: Default::default() }
+        Drawn {
+            name: name.into(),
+            every,
+            seen: 0,
+            t: Vec::new(),
+            attitudes: Vec::new(),
+            errors: Default::default(),
+        }
     }
 
     /// Takes the next row in.

@@ -24,7 +24,9 @@ pub(super) fn of(judged: &Judged, known: Known) -> Vec<String> {
     if let Some((turned, rms)) = judged.turned {
         hints.push(rotation(turned, rms, known));
     } else if known.without_mag && heading.heading_rms_deg > 10.0 && heading.inclination_rms_deg < 5.0 {
-        hints.push("without a magnetometer its heading is free: --align heading takes a constant one out".into());
+        hints.push(
+            "without a magnetometer its heading is free: --align heading takes a constant one out".into(),
+        );
     }
     hints
 }
@@ -35,7 +37,11 @@ fn rotation(turned: Aligned, rms: f64, known: Known) -> String {
     let rest = format!("{} deg RMS without it", number(rms));
     let is_heading = body_deg < NONE && (world_deg - heading_deg.abs()).abs() < NONE;
     if !is_heading {
-        let body = if body_deg < NONE { String::new() } else { format!(", and one of the body of {} deg", number(body_deg)) };
+        let body = if body_deg < NONE {
+            String::new()
+        } else {
+            format!(", and one of the body of {} deg", number(body_deg))
+        };
         let (world, option) = (number(world_deg), if body_deg < NONE { "world" } else { "frames" });
         return format!(
             "a constant rotation of the world of {world} deg ({} deg of it heading){body} explains the error ({rest}): --align {option} takes it out",
@@ -51,6 +57,8 @@ fn rotation(turned: Aligned, rms: f64, known: Known) -> String {
         _ if known.without_mag => format!(
             "its heading is off by {heading} deg, and without a magnetometer it is free ({rest}): --align heading takes it out"
         ),
-        _ => format!("a constant heading of {heading} deg explains the error ({rest}): --align heading takes it out"),
+        _ => format!(
+            "a constant heading of {heading} deg explains the error ({rest}): --align heading takes it out"
+        ),
     }
 }

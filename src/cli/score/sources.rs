@@ -1,12 +1,14 @@
 //! Where truth and estimates come from: folders, files, filters.
 
-use super::{Estimates, Refusal, Source, hints};
+use super::units::{self, Unit};
+use super::{Arguments, Estimates, Refusal, Source, hints};
 use crate::dataset::read::{self as stored, readings};
-use crate::filters::{self, FILTERS, Readings, SIX};
+use crate::filters::{self, FILTERS, FilterKind, Readings, SIX};
 use crate::geometry::Axes;
 use crate::scene::{Plan, nearest};
-use crate::score::{self, Clock, Recorded, Series, Track};
+use crate::score::{self, Clock, Reading, Recorded, Series, Track};
 use crate::sensor::SensorKind;
+use crate::table::{TimeUnit, Times};
 use crate::time::SimTime;
 use std::path::{Path, PathBuf};
 
@@ -16,28 +18,106 @@ pub(super) struct Truth {
     pub axes: Axes,
     /// For how long before it the vehicle was held still, where a run's report says so.
     pub rest: SimTime,
+    /// The unit of its times.
+    pub unit: TimeUnit,
+    /// What the user should know of how it was read.
+    pub remarks: Vec<String>,
     /// The dataset's folder, where it is one.
     folder: Option<PathBuf>,
 }
 
+/// The truth as it was read.
+enum Read {
+    Dataset(Track, Axes),
+    File(Recorded),
+}
+
+/// An estimate as it was read.
+enum Given {
+    File(PathBuf, Recorded),
+    Filter(&'static FilterKind, bool),
+}
+
+/// Reads truth and estimates; every file that cannot be read is told.
+pub(super) fn load(arguments: &Arguments) -> Result<(Truth, Vec<Source>), Refusal> {
+    let path = &arguments.truth;
+    let read = truth(path, arguments)?;
+    let axes = match &read {
+        Read::Dataset(_, axes) => *axes,
+        Read::File(recorded) => recorded.axes,
+    };
+    let folder = path.is_dir().then(|| path.clone());
+    let (mut given, mut mistakes) = (Vec::new(), Vec::new());
+    for name in &arguments.estimate {
+        match estimate(name, folder.as_deref(), axes, arguments) {
+            Ok(one) => given.push((name, one)),
+            Err(Refusal(why)) => mistakes.push(why),
+        }
+    }
+    if !mistakes.is_empty() {
+        return Err(Refusal(mistakes.join("\n")));
+    }
+    let (unit, units) = choose(path, &read, &given, arguments)?;
+    let truth = settled(path, read, axes, unit, folder)?;
+    let mut data = None;
+    let mut sources: Vec<Source> = Vec::new();
+    for ((name, given), unit) in given.into_iter().zip(units) {
+        let mut source = match given {
+            Given::File(path, recorded) => file(&truth, name, &path, recorded, unit)?,
+            Given::Filter(kind, with_mag) => run(&truth, name, kind, with_mag, &mut data)?,
+        };
+        source.name = unlike(source.name, &sources);
+        sources.push(source);
+    }
+    Ok((truth, sources))
+}
+
+/// A name that no other source has.
+fn unlike(name: String, others: &[Source]) -> String {
+    let alike = |other: &&Source| other.name == name || other.name.starts_with(&format!("{name}-"));
+    let taken = others.iter().filter(alike).count();
+    if others.iter().any(|other| other.name == name) { format!("{name}-{}", taken + 1) } else { name }
+}
+
+fn reading(arguments: &Arguments, axes: Axes) -> Reading {
+    Reading { axes: arguments.axes.unwrap_or(axes), columns: arguments.columns.choice() }
+}
+
 /// Reads the truth: of a dataset with its manifest, or of any file of time and attitude.
-pub(super) fn truth(path: &Path, axes: Option<Axes>) -> Result<Truth, Refusal> {
+fn truth(path: &Path, arguments: &Arguments) -> Result<Read, Refusal> {
     let beside = path.parent().map(|folder| folder.join("manifest.json"));
     let is_dataset =
         path.is_dir() || (path.ends_with("truth.csv") && beside.is_some_and(|file| file.exists()));
-    let (rows, axes) = if is_dataset {
-        let truth = stored::truth(path)?;
-        (truth.attitudes, truth.axes)
-    } else {
-        let axes = axes.unwrap_or_default();
-        let Recorded { estimates, axes, .. } = score::read(path, axes)?;
-        (estimates.iter().map(|estimate| (estimate.arrival, estimate.attitude)).collect(), axes)
+    if !is_dataset {
+        return Ok(Read::File(score::read_as(path, &reading(arguments, Axes::default()))?));
+    }
+    let truth = stored::truth(path)?;
+    let track = Track::new(truth.attitudes).map_err(|why| Refusal(format!("{}: {why}", path.display())))?;
+    Ok(Read::Dataset(track, truth.axes))
+}
+
+/// The truth with its times.
+fn settled(
+    path: &Path,
+    read: Read,
+    axes: Axes,
+    unit: TimeUnit,
+    folder: Option<PathBuf>,
+) -> Result<Truth, Refusal> {
+    let refuse = |why: String| Refusal(format!("{}: {why}", path.display()));
+    let (track, remarks) = match read {
+        Read::Dataset(track, _) => (track, Vec::new()),
+        Read::File(recorded) => {
+            if !recorded.times.breaks.is_empty() {
+                let why = recorded.remarks.last().cloned().unwrap_or_default();
+                return Err(refuse(format!("{why}: a truth has one clock; cut it there")));
+            }
+            let (series, remarks) = timed(recorded, unit, None).map_err(refuse)?;
+            (Track::of(series).map_err(|why| refuse(why.to_string()))?.with_gaps(), remarks)
+        }
     };
-    let track = Track::new(rows).map_err(|why| Refusal(format!("{}: {why}", path.display())))?;
-    let track = if is_dataset { track } else { track.with_gaps() };
-    let folder = path.is_dir().then(|| path.to_path_buf());
     let rest = folder.as_deref().and_then(rest).unwrap_or(SimTime::ZERO);
-    Ok(Truth { track, axes, rest, folder })
+    Ok(Truth { track, axes, rest, unit, remarks, folder })
 }
 
 /// For how long a run held the vehicle still before the scene.
@@ -48,35 +128,15 @@ fn rest(folder: &Path) -> Option<SimTime> {
     Some(SimTime((seconds * 1e9) as i64))
 }
 
-/// Reads the files and runs the filters; every one that cannot be is told.
-pub(super) fn estimates(truth: &Truth, names: &[String], axes: Option<Axes>) -> Result<Vec<Source>, Refusal> {
-    let mut data = None;
-    let mut sources: Vec<Source> = Vec::new();
-    let mut mistakes = Vec::new();
-    for name in names {
-        let found = match filters::from_name(name) {
-            Some(_) if !Path::new(name).exists() => run(truth, name, &mut data),
-            _ => file(truth, name, axes),
-        };
-        match found {
-            Ok(mut source) => {
-                let taken = sources.iter().filter(|other| {
-                    other.name == source.name || other.name.starts_with(&format!("{}-", source.name))
-                });
-                let taken = taken.count();
-                if taken > 0 && sources.iter().any(|other| other.name == source.name) {
-                    source.name = format!("{}-{}", source.name, taken + 1);
-                }
-                sources.push(source);
-            }
-            Err(Refusal(why)) => mistakes.push(why),
-        }
-    }
-    if mistakes.is_empty() { Ok(sources) } else { Err(Refusal(mistakes.join("\n"))) }
-}
-
-fn file(truth: &Truth, name: &str, axes: Option<Axes>) -> Result<Source, Refusal> {
+/// Reads one estimate, or names the filter.
+fn estimate(name: &str, folder: Option<&Path>, axes: Axes, arguments: &Arguments) -> Result<Given, Refusal> {
     let path = Path::new(name);
+    if let Some((kind, with_mag)) = filters::from_name(name).filter(|_| !path.exists()) {
+        let lacking =
+            || Refusal(format!("the filter {name} needs readings: give a dataset's folder as the truth"));
+        folder.ok_or_else(lacking)?;
+        return Ok(Given::Filter(kind, with_mag));
+    }
     if !path.exists() {
         let names = FILTERS.map(|kind| kind.name);
         let near = nearest(name, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
@@ -86,25 +146,109 @@ fn file(truth: &Truth, name: &str, axes: Option<Axes>) -> Result<Source, Refusal
         )));
     }
     let path = if path.is_dir() { path.join("estimate.csv") } else { path.to_path_buf() };
-    let recorded = score::read(&path, axes.unwrap_or(truth.axes))?;
+    let recorded = score::read_as(&path, &reading(arguments, axes))?;
+    Ok(Given::File(path, recorded))
+}
+
+/// The units of the truth's times and of each estimate's.
+fn choose(
+    path: &Path,
+    read: &Read,
+    given: &[(&String, Given)],
+    arguments: &Arguments,
+) -> Result<(TimeUnit, Vec<TimeUnit>), Refusal> {
+    let told = arguments.time_unit;
+    let place = path.display().to_string();
+    let ours = match read {
+        Read::Dataset(track, _) => Times::of_ns([track.first().0, track.last().0]),
+        Read::File(_) => Times::default(),
+    };
+    let truth = match read {
+        Read::Dataset(..) => Unit { name: &place, column: "t_ns", times: &ours, told },
+        Read::File(read) => Unit { name: &place, column: &read.time_name, times: &read.times, told },
+    };
+    let files: Vec<Unit<'_>> = given
+        .iter()
+        .map(|(name, given)| match given {
+            Given::File(_, read) => Unit { name, column: &read.time_name, times: &read.times, told },
+            // A filter's times are the dataset's.
+            Given::Filter(..) => truth,
+        })
+        .collect();
+    units::choose(&truth, &files)
+}
+
+/// What a file holds at the times that a unit makes of them: of several clocks that follow each other, or of times that
+/// jump by more than `longest` ns, the longest stretch.
+fn timed(recorded: Recorded, unit: TimeUnit, longest: Option<i64>) -> Result<(Series, Vec<String>), String> {
+    let Recorded { attitudes, times, time_name, mut remarks, .. } = recorded;
+    if times.unit.is_none() {
+        remarks.push(format!("its column `{time_name}` is read as {unit}"));
+    }
+    let ns = times.in_ns(unit).ok_or_else(|| format!("its times, read as {unit}, are beyond 292 years"))?;
+    let all = ns.len();
+    let is_jump = |pair: &[i64]| longest.is_some_and(|longest| pair[1].saturating_sub(pair[0]) > longest);
+    let jumps = ns.windows(2).enumerate().filter(|(_, pair)| is_jump(pair)).map(|(i, _)| i + 1);
+    let mut cuts: Vec<usize> = times.breaks.iter().copied().chain(jumps).chain([0, all]).collect();
+    cuts.sort_unstable();
+    cuts.dedup();
+    let series = Series::of(ns, attitudes);
+    let stretch =
+        cuts.windows(2).map(|pair| pair[0]..pair[1]).max_by_key(|range| range.len()).unwrap_or(0..all);
+    if stretch.len() == all {
+        return Ok((series, remarks));
+    }
+    remarks.push(format!(
+        "its clock is set {} times: of its {all} rows the longest stretch between, {} rows from row {} on, is judged",
+        cuts.len() - 2,
+        stretch.len(),
+        stretch.start + 1
+    ));
+    Ok((series.part(stretch), remarks))
+}
+
+fn file(
+    truth: &Truth,
+    name: &str,
+    path: &Path,
+    recorded: Recorded,
+    unit: TimeUnit,
+) -> Result<Source, Refusal> {
     // A dot would end the name in a limit's field.
     let stem = path.file_stem().map_or(name.into(), |stem| stem.to_string_lossy().replace('.', "-"));
-    let of = |attitudes: &[crate::geometry::Attitude]| {
-        Series::new(recorded.estimates.iter().zip(attitudes).map(|(it, attitude)| (it.arrival.0, *attitude)))
+    let (axes, rows) = (recorded.axes, recorded.rows.clone());
+    let mut recorded = recorded;
+    let others = std::mem::take(&mut recorded.others);
+    // Rows before and after cannot both be within the truth.
+    let longest = truth.track.last() - truth.track.first() + SimTime(1_000_000_000);
+    let whole = recorded.attitudes.len();
+    let times = if others.is_empty() { None } else { recorded.times.in_ns(unit) };
+    let (series, remarks) =
+        timed(recorded, unit, Some(longest.0)).map_err(|why| Refusal(format!("{name}: {why}")))?;
+    let others = match times {
+        // Of part of a file the other readings are not looked through.
+        Some(times) if series.len() == whole => {
+            others.into_iter().map(|(what, attitudes)| (what, Series::of(times.clone(), attitudes))).collect()
+        }
+        _ => Vec::new(),
     };
-    let series = Series::new(recorded.estimates.iter().map(|it| (it.arrival.0, it.attitude)));
-    let others = recorded.others.iter().map(|(name, attitudes)| (*name, of(attitudes))).collect();
-    let (axes, remarks) = (recorded.axes, recorded.remarks.clone());
     // An estimate in the dataset's own folder is the dataset's.
-    let is_ours = truth.folder.as_deref().is_some_and(|folder| is_within(&path, folder));
-    let clock = if is_ours { Clock::Truth } else { Clock::Auto };
-    let recorded = Estimates { series, others, axes, remarks };
-    Ok(Source { name: stem, source: name.to_string(), clock, recorded, hints: truth.known(false) })
+    let is_ours = truth.folder.as_deref().is_some_and(|folder| is_within(path, folder));
+    Ok(Source {
+        name: stem,
+        source: name.to_string(),
+        clock: if is_ours { Clock::Truth } else { Clock::Auto },
+        time_unit: unit,
+        rows: Some(rows),
+        recorded: Estimates { series, others, axes, remarks },
+        hints: truth.known(false),
+    })
 }
 
 /// Whether a file is the estimate that a dataset's manifest lists.
 fn is_within(path: &Path, folder: &Path) -> bool {
-    let same = |a: &Path, b: &Path| a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
+    let same =
+        |a: &Path, b: &Path| a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
     path.file_stem().is_some_and(|stem| stem == "estimate")
         && path.parent().is_some_and(|parent| same(parent, folder))
         && folder.join("manifest.json").exists()
@@ -121,17 +265,17 @@ impl Truth {
     }
 }
 
-
 /// What filters run on: the dataset's readings and its declination.
 type Data = (Readings, f64);
 
-fn run(truth: &Truth, name: &str, data: &mut Option<Data>) -> Result<Source, Refusal> {
-    let Some((kind, with_mag)) = filters::from_name(name) else { return Err(Refusal(name.to_string())) };
-    let Some(folder) = &truth.folder else {
-        return Err(Refusal(format!(
-            "the filter {name} needs readings: give a dataset's folder as the truth"
-        )));
-    };
+fn run(
+    truth: &Truth,
+    name: &str,
+    kind: &FilterKind,
+    with_mag: bool,
+    data: &mut Option<Data>,
+) -> Result<Source, Refusal> {
+    let Some(folder) = &truth.folder else { return Err(Refusal(name.to_string())) };
     if data.is_none() {
         *data = Some((of_dataset(folder)?, declination(folder)?));
     }
@@ -152,9 +296,15 @@ fn run(truth: &Truth, name: &str, data: &mut Option<Data>) -> Result<Source, Ref
     } else {
         Vec::new()
     };
-    let recorded = Estimates { series, others: Vec::new(), axes: Axes::NedFrd, remarks };
-    let hints = truth.known(!with_mag || lacks);
-    Ok(Source { name: name.to_string(), source: name.to_string(), clock: Clock::Sample, recorded, hints })
+    Ok(Source {
+        name: name.to_string(),
+        source: name.to_string(),
+        clock: Clock::Sample,
+        time_unit: TimeUnit::Ns,
+        rows: None,
+        recorded: Estimates { series, others: Vec::new(), axes: Axes::NedFrd, remarks },
+        hints: truth.known(!with_mag || lacks),
+    })
 }
 
 fn of_dataset(folder: &Path) -> Result<Readings, Refusal> {

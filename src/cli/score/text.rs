@@ -7,10 +7,19 @@ pub(super) fn report(report: &ScoreReport) -> String {
     let judged = || report.estimates.iter().filter_map(|scored| Some((scored, scored.figures.as_ref()?)));
     let mut text = String::new();
     if judged().next().is_some() {
-        text += &table(&HEADING, &judged().flat_map(|(scored, figures)| rows(scored, figures)).collect::<Vec<_>>());
+        text += &table(
+            &HEADING,
+            &judged().flat_map(|(scored, figures)| rows(scored, figures)).collect::<Vec<_>>(),
+        );
         let angles = ["estimate", "roll RMS deg", "max", "pitch RMS deg", "max", "yaw RMS deg", "max"];
         text += "\n";
-        text += &table(&angles, &judged().map(|(scored, figures)| angles_of(scored, figures)).collect::<Vec<_>>());
+        text += &table(
+            &angles,
+            &judged().map(|(scored, figures)| angles_of(scored, figures)).collect::<Vec<_>>(),
+        );
+    }
+    for remark in &report.truth_remarks {
+        text += &format!("{}: {remark}\n", report.truth);
     }
     for scored in &report.estimates {
         for note in notes(scored) {
@@ -70,7 +79,8 @@ fn rows(scored: &Scored, figures: &Figures) -> Vec<Vec<String>> {
 
 fn angles_of(scored: &Scored, figures: &Figures) -> Vec<String> {
     let e = &figures.errors;
-    let angles = [e.roll_rms_deg, e.roll_max_deg, e.pitch_rms_deg, e.pitch_max_deg, e.yaw_rms_deg, e.yaw_max_deg];
+    let angles =
+        [e.roll_rms_deg, e.roll_max_deg, e.pitch_rms_deg, e.pitch_max_deg, e.yaw_rms_deg, e.yaw_max_deg];
     std::iter::once(scored.name.clone()).chain(angles.map(number)).collect()
 }
 
@@ -85,7 +95,11 @@ fn notes(scored: &Scored) -> Vec<String> {
         notes.push(format!("estimate looks {looks}{without}"));
     }
     if let Some(aligned) = f.aligned {
-        let body = if aligned.body_deg > 0.0 { format!(" and one of the body of {} deg", number(aligned.body_deg)) } else { String::new() };
+        let body = if aligned.body_deg > 0.0 {
+            format!(" and one of the body of {} deg", number(aligned.body_deg))
+        } else {
+            String::new()
+        };
         notes.push(match f.heading_offset_deg {
             Some(heading) => format!("a heading of {} deg is taken out", number(heading)),
             None => format!(

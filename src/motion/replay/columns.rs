@@ -1,142 +1,160 @@
-//! The header of a log, and which of its columns are meant.
+//! Which columns of a log are meant: those that the scene names, else those that are known by their names.
 
-use super::log;
-use crate::keys::{KeyError, Text, Values, did_you_mean};
+use crate::keys::{KeyError, Values};
+use crate::table::{Attitudes, Choice, Clock, Set, Table, TableError, TimeColumn};
+use crate::time::Rate;
+use std::io::BufRead;
 
-/// A header: the names of the columns and where the rows begin.
-pub(super) struct Header<'a> {
-    /// What messages call the log.
-    pub file: &'a str,
-    /// Its columns.
-    pub names: Vec<String>,
-    /// What separates them; a space stands for any white space.
-    pub delimiter: u8,
-    /// Everything after the header.
-    pub rows: &'a str,
-    /// The lines before `rows`.
-    pub lines: u64,
+/// What a log has: its columns, and how many inside units one of theirs is.
+pub(super) enum Turns {
+    /// Quaternions, w first.
+    Quaternion([usize; 4]),
+    /// Roll, pitch and yaw, rad.
+    Euler([usize; 3], f64),
+    /// Rates about body x, y and z, rad/s.
+    Rate([usize; 3], f64),
 }
 
-/// Columns that are recognised by their names, the first set that a log has; each with how many inside units one of
-/// theirs is.
-pub(super) struct Known {
-    pub key: &'static str,
-    pub sets: &'static [(&'static [&'static str], f64)],
+/// When the rows of a log are.
+pub(super) struct When {
+    pub clock: Clock,
+    /// How many ns the unit is that the scene gives its column.
+    pub ns: Option<i64>,
 }
 
-/// Columns to be read: the key to blame, their names, their places in a row, and their unit.
-#[derive(Clone, Debug)]
-pub(super) struct Group {
-    pub key: &'static str,
-    pub names: Vec<String>,
-    pub indices: Vec<usize>,
-    pub unit: f64,
+/// The keys of columns of which one at most is given.
+const TURNS: [&str; 3] = ["quaternion", "euler", "angular_rate"];
+
+pub(super) fn at(key: &'static str) -> impl Fn(TableError) -> KeyError {
+    move |error| KeyError::new(key, error.in_short())
 }
 
-/// The header of a log: its first line that is no comment, or the comment before its first row of numbers.
-pub(super) fn header(text: &Text) -> Result<Header<'_>, KeyError> {
-    let contents = text.contents.strip_prefix('\u{feff}').unwrap_or(&text.contents);
-    let (mut offset, mut comment) = (0, None);
-    for (line, whole) in (0..).zip(contents.split_inclusive('\n')) {
-        let trimmed = whole.trim();
-        let of = |names: &str, offset: usize, lines| Header {
-            file: &text.name,
-            delimiter: delimiter(names),
-            names: split(names, delimiter(names)),
-            rows: &contents[offset..],
-            lines,
-        };
-        match trimmed.strip_prefix('#') {
-            Some(rest) => comment = Some(rest.trim()),
-            None if trimmed.is_empty() => {}
-            None if split(trimmed, delimiter(trimmed)).iter().any(|field| log::is_number(field)) => {
-                let header = comment.filter(|names| !names.is_empty()).map(|names| of(names, offset, line));
-                let lacking = || {
-                    let message = format!(
-                        "{}:{} holds numbers, but the line before the first row names the columns, such as t_ns,qw,qx,qy,qz",
-                        text.name,
-                        line + 1
-                    );
-                    KeyError::new("file", message)
-                };
-                return header.ok_or_else(lacking);
-            }
-            None => return Ok(of(trimmed, offset + whole.len(), line + 1)),
+/// The column of time, or the rate.
+pub(super) fn when<R: BufRead>(table: &Table<R>, values: &Values) -> Result<When, KeyError> {
+    if let Some(hz) = values.scalar("rate") {
+        if values.has("time") {
+            return Err(KeyError::new("rate", "is given beside `time`: keep one of the two"));
         }
-        offset += whole.len();
+        // To a billionth of a hertz.
+        let rate =
+            (hz.is_finite() && hz * 1e9 < 1e18).then(|| Rate::new((hz * 1e9).round() as u64, 1_000_000_000));
+        let rate = rate
+            .flatten()
+            .ok_or_else(|| KeyError::new("rate", "takes a rate above 0, such as \"200 Hz\""))?;
+        return Ok(When { clock: Clock::Rate(rate), ns: None });
     }
-    Err(KeyError::new("file", format!("{} is empty: a header and rows of numbers are needed", text.name)))
+    if let Some((names, unit)) = values.columns("time") {
+        let ns = (unit * 1e9).round();
+        if ns < 1.0 {
+            return Err(KeyError::new("time", "takes a unit of a nanosecond or more, such as \"ns\""));
+        }
+        let [column] = picks(table, "time", names)?;
+        let time = TimeColumn { column, fine: None, unit: None };
+        return Ok(When { clock: Clock::Column { time, assumed: None }, ns: Some(ns as i64) });
+    }
+    let clock = table.clock(&Choice::default()).map_err(at("file"))?;
+    clock.map(|clock| When { clock, ns: None }).ok_or_else(|| {
+        lacking(
+            table,
+            "has no column of time that is recognised (t_ns, t_us, t_ms, t_s, time, timestamp): add time = { column = \"…\", unit = \"s\" }, or rate = \"200 Hz\" to a log without one",
+        )
+    })
 }
 
-/// The likeliest of comma, semicolon and tab; else white space.
-fn delimiter(line: &str) -> u8 {
-    let count = |delimiter: u8| line.bytes().filter(|byte| *byte == delimiter).count();
-    let most = [b',', b';', b'\t'].into_iter().max_by_key(|&delimiter| count(delimiter));
-    most.filter(|&delimiter| count(delimiter) > 0).unwrap_or(b' ')
-}
-
-fn split(line: &str, delimiter: u8) -> Vec<String> {
-    let plain = |field: &str| field.trim().trim_matches('"').trim().to_string();
-    match delimiter {
-        b' ' => line.split_whitespace().map(plain).collect(),
-        other => line.split(char::from(other)).map(plain).collect(),
+/// The columns of attitude or angular rate; what is odd about them is told.
+pub(super) fn turns<R: BufRead>(
+    table: &Table<R>,
+    values: &Values,
+    warnings: &mut Vec<String>,
+) -> Result<Turns, KeyError> {
+    let given: Vec<_> = TURNS.into_iter().filter(|key| values.has(key)).collect();
+    if let [first, second, ..] = given[..] {
+        return Err(KeyError::new(second, format!("is given beside `{first}`: keep one of the two")));
+    }
+    if let Some((key, (names, unit))) = given.first().and_then(|key| Some((*key, values.columns(key)?))) {
+        return Ok(match key {
+            "quaternion" => Turns::Quaternion(picks(table, key, names)?),
+            "euler" => Turns::Euler(picks(table, key, names)?, unit),
+            _ => Turns::Rate(picks(table, key, names)?, unit),
+        });
+    }
+    let rates = table.angular_rate();
+    let attitude = table.attitude(&Choice::default()).map_err(at("file"))?;
+    match (attitude, rates) {
+        (Some(Attitudes::Quaternion(set)), _) => {
+            tell(table, &set, warnings);
+            Ok(Turns::Quaternion(set.columns))
+        }
+        (Some(Attitudes::Euler(set)), rates) if set.unit.is_some() || rates.is_none() => {
+            Ok(Turns::Euler(set.columns, known(table, &set, "euler", "deg", warnings)?))
+        }
+        (_, Some(set)) => {
+            Ok(Turns::Rate(set.columns, known(table, &set, "angular_rate", "rad/s", warnings)?))
+        }
+        _ => Err(lacking(
+            table,
+            "has no attitude or angular rate that is recognised (qw, qx, qy, qz, …): name its columns, such as euler = { columns = [\"roll\", \"pitch\", \"yaw\"], unit = \"deg\" }",
+        )),
     }
 }
 
-impl Header<'_> {
-    /// The column of time.
-    pub(super) fn time(&self, values: &Values, known: &Known) -> Result<Group, KeyError> {
-        let found = self.given(values, known).or_else(|| self.known(known).map(Ok));
-        let lacking = format!(
-            "{} has no column of time that is recognised (t_ns, t_s): add time = {{ column = \"…\", unit = \"s\" }}; {}",
-            self.file,
-            self.columns()
+/// The unit of columns that are known by their names, and what is odd about them.
+fn known<R: BufRead>(
+    table: &Table<R>,
+    set: &Set<3>,
+    key: &str,
+    example: &str,
+    warnings: &mut Vec<String>,
+) -> Result<f64, KeyError> {
+    tell(table, set, warnings);
+    let names = set.columns.map(|column| table.called(column));
+    if let Some(why) = set.by_kind {
+        warnings.push(format!(
+            "{}: {} have no unit; {why}, so these are read",
+            table.place(),
+            names.join(", ")
+        ));
+    }
+    set.unit.ok_or_else(|| {
+        let message = format!(
+            "{}: {} have no unit: add {key} = {{ columns = {names:?}, unit = \"{example}\" }}",
+            table.place(),
+            names.join(", ")
         );
-        found.unwrap_or_else(|| Err(KeyError::new("file", lacking)))
-    }
+        KeyError::new("file", message)
+    })
+}
 
-    /// The columns that the scene names, or the first of these that the log has.
-    pub(super) fn one_of(&self, values: &Values, known: &[&Known]) -> Result<Group, KeyError> {
-        let given: Vec<_> = known.iter().filter(|known| values.has(known.key)).collect();
-        if let [first, second, ..] = given[..] {
-            let message = format!("is given beside `{}`: keep one of the two", first.key);
-            return Err(KeyError::new(second.key, message));
+fn tell<R: BufRead, const N: usize>(table: &Table<R>, set: &Set<N>, warnings: &mut Vec<String>) {
+    if !set.others.is_empty() {
+        let (first, others) = (table.called(set.columns[0]), set.others.join(", "));
+        warnings.push(format!("{}: the columns of `{first}` are read, not those of {others}", table.place()));
+    }
+}
+
+/// Why no columns were found.
+fn lacking<R: BufRead>(table: &Table<R>, what: &str) -> KeyError {
+    let (place, told) = (table.place(), table.told());
+    let file = place.rsplit_once(':').map_or(place.as_str(), |(file, _)| file);
+    let message = match table.kind() {
+        Some(kind) => {
+            kind.refusal(file, "`replay` does not read: it reads tables with a header and TUM trajectories")
         }
-        let found = given.first().and_then(|known| self.given(values, known));
-        let found = found.or_else(|| known.iter().find_map(|known| self.known(known)).map(Ok));
-        let lacking = format!(
-            "{} has no attitude or angular rate that is recognised (qw, qx, qy, qz, …): name its columns, such as euler = {{ columns = [\"roll\", \"pitch\", \"yaw\"], unit = \"deg\" }}; {}",
-            self.file,
-            self.columns()
-        );
-        found.unwrap_or_else(|| Err(KeyError::new("file", lacking)))
-    }
+        None if table.is_headed() => format!("{file} {what}; {told}"),
+        None => format!(
+            "{place} holds numbers, but the line before the first row names the columns, such as t_ns,qw,qx,qy,qz; or give them by number, such as quaternion = [\"2\", \"3\", \"4\", \"5\"] with time = {{ column = \"1\", unit = \"s\" }} or a rate"
+        ),
+    };
+    KeyError::new("file", message)
+}
 
-    fn given(&self, values: &Values, known: &Known) -> Option<Result<Group, KeyError>> {
-        let (names, unit) = values.columns(known.key)?;
-        let missing: Vec<_> = names.iter().filter(|name| !self.names.contains(name)).collect();
-        if let [first, ..] = missing[..] {
-            let hint = did_you_mean(first, self.names.iter().map(String::as_str));
-            let missing: Vec<_> = missing.iter().map(|name| format!("`{name}`")).collect();
-            let (file, missing) = (self.file, missing.join(", "));
-            let message = format!("{file} has no column {missing}{hint}; {}", self.columns());
-            return Some(Err(KeyError::new(known.key, message)));
-        }
-        self.group(known.key, names.iter().map(String::as_str), unit).map(Ok)
-    }
-
-    fn known(&self, known: &Known) -> Option<Group> {
-        known.sets.iter().find_map(|(names, unit)| self.group(known.key, names.iter().copied(), *unit))
-    }
-
-    fn group<'n>(&self, key: &'static str, names: impl Iterator<Item = &'n str>, unit: f64) -> Option<Group> {
-        let names: Vec<_> = names.map(String::from).collect();
-        let find = |name: &String| self.names.iter().position(|column| column == name);
-        let indices = names.iter().map(find).collect::<Option<_>>()?;
-        Some(Group { key, names, indices, unit })
-    }
-
-    fn columns(&self) -> String {
-        format!("its columns are {}", self.names.join(", "))
-    }
+/// The places of columns that the scene names.
+fn picks<R: BufRead, const N: usize>(
+    table: &Table<R>,
+    key: &'static str,
+    names: &[String],
+) -> Result<[usize; N], KeyError> {
+    let names = <&[String; N]>::try_from(names);
+    let names = names.map_err(|_| KeyError::new(key, format!("takes {N} columns")))?;
+    table.picks(names).map_err(at(key))
 }

@@ -1,11 +1,11 @@
 //! The rows of a log as numbers: times exact in nanoseconds from the first row, values in inside units.
 
-use super::columns::{Group, Header};
+use super::columns::{When, at};
 use super::grid::Grid;
 use crate::keys::KeyError;
-use crate::time::{NANOS, SimTime};
-use csv::{ByteRecord, ReaderBuilder};
-use std::borrow::Cow;
+use crate::table::{Clock, Flaw, Series, Table, TimeUnit, Wanted};
+use crate::time::SimTime;
+use std::io::BufRead;
 
 /// A log of N values a row.
 pub(super) struct Log<const N: usize> {
@@ -17,58 +17,44 @@ pub(super) struct Log<const N: usize> {
     pub rows: Vec<[f64; N]>,
     /// The line each row stands on.
     lines: Vec<u32>,
+    /// What the user should know of how it was read.
+    pub warnings: Vec<String>,
 }
 
 impl<const N: usize> Log<N> {
-    /// Reads the column of `time` and those of `group`.
-    pub(super) fn read(header: &Header<'_>, time: &Group, group: &Group) -> Result<Log<N>, KeyError> {
-        // Every unit of time from the nanosecond on is a whole number of them.
-        let unit = (time.unit * NANOS as f64).round();
-        if unit < 1.0 {
-            return Err(KeyError::new("time", "takes a unit of a nanosecond or more, such as \"ns\""));
-        }
-        let mut rows = Rows { header, time, group, unit: unit as i128, last: None };
-        let (mut times, mut values, mut lines) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut mistakes, mut origin) = (Vec::new(), None);
-        let text = separated(header);
-        let delimiter = if header.delimiter == b' ' { b'\t' } else { header.delimiter };
-        let mut reader = ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .delimiter(delimiter)
-            .comment(Some(b'#'))
-            .from_reader(text.as_bytes());
-        let mut record = ByteRecord::new();
-        // What is in memory can always be read.
-        while reader.read_byte_record(&mut record).unwrap_or(false) {
-            // A record's own position is before the comments and empty lines above it.
-            let end = reader.position();
-            let ended = text.as_bytes().get(end.byte() as usize - 1) == Some(&b'\n');
-            let line = header.lines + end.line() - u64::from(ended);
-            match rows.row::<N>(&record) {
-                Ok((t, row)) => {
-                    times.push(t - *origin.get_or_insert(t));
-                    values.push(row);
-                    lines.push(u32::try_from(line).unwrap_or(u32::MAX));
-                }
-                Err(problem) => mistakes.push(format!("{}:{line}: {problem}", header.file)),
-            }
-        }
-        if let Some(message) = first_of(mistakes) {
-            return Err(KeyError::new("file", message));
-        }
-        if values.len() < 2 {
-            let count = if values.is_empty() { "no row" } else { "one row" };
-            return Err(KeyError::new(
-                "file",
-                format!("{} has {count}, but a motion needs two", header.file),
+    /// Reads these columns, their values times `unit`; `is_nothing` says which row holds nothing at all.
+    pub(super) fn read<R: BufRead>(
+        table: Table<R>,
+        when: &When,
+        (columns, unit): ([usize; N], f64),
+        is_nothing: fn(&[f64; N]) -> bool,
+    ) -> Result<Log<N>, KeyError> {
+        let file = table.place();
+        let file = file.rsplit_once(':').map_or(file.as_str(), |(file, _)| file).to_string();
+        let column = match when.clock {
+            Clock::Column { time, .. } => Some((time.column, table.called(time.column))),
+            Clock::Rate(_) => None,
+        };
+        let is_used =
+            |other: &usize| columns.contains(other) || column.as_ref().is_some_and(|(time, _)| time == other);
+        let watched = table.position().filter(|columns| !columns.iter().any(is_used));
+        let watched_names = watched.map(|columns| columns.map(|column| table.called(column)));
+        let watched = watched.map_or(Vec::new(), |columns| columns.to_vec());
+        let wanted = Wanted { clock: when.clock, columns, watched };
+        let make = |row: &[f64; N]| if is_nothing(row) { Err(Flaw::Zero) } else { Ok(row.map(|x| x * unit)) };
+        let series = table.read(&wanted, make).map_err(at("file"))?;
+        let times = times(&file, &series, when, column.map(|(_, name)| name))?;
+        let mut warnings: Vec<_> = series.rows.told().into_iter().chain(series.remarks).collect();
+        warnings.iter_mut().for_each(|warning| *warning = format!("{file}: {warning}"));
+        warnings.extend(times.warning);
+        if let Some(names) = watched_names.filter(|_| series.changes.contains(&true)) {
+            warnings.push(format!(
+                "{file}: {} are not used: a log turns the vehicle and does not move it, so the accelerometer does not feel this motion and neither barometer nor GPS tell it",
+                names.join(", ")
             ));
         }
-        let within = |t: i128| i64::try_from(t).ok().map(SimTime);
-        let Some(times) = times.into_iter().map(within).collect::<Option<Vec<_>>>() else {
-            return Err(KeyError::new("time", format!("{} lasts longer than 292 years", header.file)));
-        };
-        Ok(Log { file: header.file.to_string(), grid: Grid::new(times), rows: values, lines })
+        let grid = Grid::new(times.from_first);
+        Ok(Log { file, grid, rows: series.values, lines: series.lines, warnings })
     }
 
     /// File and line of a row.
@@ -77,80 +63,71 @@ impl<const N: usize> Log<N> {
     }
 }
 
-/// The rows with one separator between two values.
-fn separated<'a>(header: &Header<'a>) -> Cow<'a, str> {
-    if header.delimiter != b' ' {
-        return header.rows.into();
+/// The times of the rows.
+struct Within {
+    from_first: Vec<SimTime>,
+    warning: Option<String>,
+}
+
+fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>) -> Result<Within, KeyError> {
+    let wrong = |message: String| Err(KeyError::new("file", message));
+    let times = &series.times;
+    if times.ticks.len() < 2 {
+        let count = if times.ticks.is_empty() { "no row" } else { "one row" };
+        let told = series.rows.told().map_or(String::new(), |told| format!(" ({told})"));
+        return wrong(format!("{file} has {count}, but a motion needs two{told}"));
     }
-    let line = |line: &str| line.split_whitespace().collect::<Vec<_>>().join("\t") + "\n";
-    header.rows.lines().map(line).collect::<String>().into()
-}
-
-struct Rows<'a> {
-    header: &'a Header<'a>,
-    time: &'a Group,
-    group: &'a Group,
-    /// Nanoseconds in a unit of time.
-    unit: i128,
-    last: Option<i128>,
-}
-
-impl Rows<'_> {
-    fn row<const N: usize>(&mut self, record: &ByteRecord) -> Result<(i128, [f64; N]), String> {
-        let field = |index: usize| {
-            let text = record.get(index).ok_or_else(|| {
-                format!("the row has {} columns, the header {}", record.len(), self.header.names.len())
-            })?;
-            Ok::<_, String>(std::str::from_utf8(text).unwrap_or("?").trim())
-        };
-        let text = field(self.time.indices[0])?;
-        let name = &self.time.names[0];
-        let t =
-            nanoseconds(text, self.unit).ok_or_else(|| format!("`{text}` in column `{name}` is no time"))?;
-        if self.last.is_some_and(|last| t <= last) {
-            return Err(format!("`{text}` in column `{name}` is not after the row before: times must grow"));
+    if let Some(row) = times.breaks.first() {
+        return wrong(format!(
+            "{file}:{}: its clock steps back from the row before and goes on from there: cut the log there",
+            series.lines[*row]
+        ));
+    }
+    let (ns, warning) = match (when.ns, times.unit, column) {
+        (Some(ns), ..) => (ns, None),
+        (None, Some(unit), _) => (unit.ns(), None),
+        (None, None, column) => {
+            let column = column.unwrap_or_default();
+            let unit = guessed(file, series, &column)?;
+            let how = format!("{file}: its column `{column}` has no unit and is read as {unit}");
+            (unit.ns(), Some(how))
         }
-        self.last = Some(t);
-        let mut values = [0.0; N];
-        for ((value, &index), name) in values.iter_mut().zip(&self.group.indices).zip(&self.group.names) {
-            let text = field(index)?;
-            let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-            *value = number.ok_or_else(|| format!("`{text}` in column `{name}` is no finite number"))?
-                * self.group.unit;
-        }
-        Ok((t, values))
-    }
-}
-
-/// Whether a field is a number, or stands for one that is missing.
-pub(super) fn is_number(field: &str) -> bool {
-    field.parse::<f64>().is_ok()
-}
-
-/// A decimal number of units as nanoseconds, rounded only where it is finer: a count of seconds since 1970 keeps
-/// all its digits, which a double does not.
-fn nanoseconds(text: &str, unit: i128) -> Option<i128> {
-    if let Ok(whole) = text.parse::<i64>() {
-        return i128::from(whole).checked_mul(unit);
-    }
-    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
-        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
-        None => (text, 0),
     };
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    if !fraction.bytes().all(|byte| byte.is_ascii_digit()) || fraction.len() > 30 {
-        return None;
+    // A long count of a fine unit is beyond what ns hold; from the first row on it is not.
+    let first = times.ticks[0];
+    let from_first = crate::table::Times {
+        ticks: times.ticks.iter().map(|t| t.saturating_sub(first)).collect(),
+        ..crate::table::Times::default()
+    };
+    let Some(ns) = from_first.scaled(ns) else {
+        return Err(KeyError::new("time", format!("{file} lasts longer than 292 years")));
+    };
+    if let Some(row) = ns.windows(2).position(|pair| pair[1] <= pair[0]) {
+        return wrong(format!(
+            "{file}:{}: is less than a nanosecond after the row before",
+            series.lines[row + 1]
+        ));
     }
-    let digits: i128 = format!("{whole}{fraction}").parse().ok()?;
-    let scaled = digits.checked_mul(unit)?;
-    let power = exponent.checked_sub(fraction.len() as i32)?;
-    let ten = 10i128.checked_pow(power.unsigned_abs());
-    if power >= 0 {
-        return scaled.checked_mul(ten?);
+    Ok(Within { from_first: ns.into_iter().map(SimTime).collect(), warning })
+}
+
+/// The unit of times that do not say it, if only one can be meant.
+fn guessed<T>(file: &str, series: &Series<T>, column: &str) -> Result<TimeUnit, KeyError> {
+    let (unit, is_sure) = series.times.guess();
+    if is_sure {
+        return Ok(unit);
     }
-    // So fine that it is nothing.
-    let Some(ten) = ten else { return Some(0) };
-    Some((2 * (scaled % ten)).signum() * i128::from(2 * (scaled % ten).abs() >= ten) + scaled / ten)
+    let plausible: Vec<_> = series.times.plausible().iter().map(|unit| format!("\"{unit}\"")).collect();
+    let why = match plausible.is_empty() {
+        true => "in none does it come at a rate that a log has".to_string(),
+        false => format!("{} fit its rows", plausible.join(" and ")),
+    };
+    Err(KeyError::new(
+        "file",
+        format!(
+            "{file}: its column `{column}` has no unit, and {why}: add time = {{ column = \"{column}\", unit = \"{unit}\" }} or whichever it is"
+        ),
+    ))
 }
 
 /// The first of several like mistakes, and how many more there are.
@@ -162,30 +139,4 @@ pub(super) fn first_of(mistakes: Vec<String>) -> Option<String> {
         1 => format!("{first} (and another row like it)"),
         more => format!("{first} (and {more} more rows like it)"),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_time_keeps_every_digit_down_to_a_nanosecond() {
-        for (text, unit, ns) in [
-            ("1700000000.123456789", NANOS, 1_700_000_000_123_456_789),
-            ("1700000000123456", 1000, 1_700_000_000_123_456_000),
-            ("-0.5", NANOS, -500_000_000),
-            ("+2", NANOS, 2_000_000_000),
-            ("1.5e-3", NANOS, 1_500_000),
-            ("1e3", 1, 1000),
-            ("0.00000000051", NANOS, 1),
-            ("0.00000000049", NANOS, 0),
-            ("1.25", 60 * NANOS, 75 * NANOS),
-            ("1e-300", 1, 0),
-        ] {
-            assert_eq!(nanoseconds(text, unit.into()), Some(ns.into()), "{text}");
-        }
-        for text in ["", ".", "-", "nan", "inf", "1.2.3", "1e", "0x10", "1.-5", "1e300", "12:30:00"] {
-            assert_eq!(nanoseconds(text, NANOS.into()), None, "{text}");
-        }
-    }
 }

@@ -242,41 +242,64 @@ fn mistakes_of_a_log_are_placed() {
         ("", "file", "log.csv is empty"),
         ("# only a comment\n", "file", "is empty"),
         ("0,1,0,0,0\n1,1,0,0,0\n", "file", "log.csv:1 holds numbers, but the line before"),
-        ("t,qw,qx,qy,qz\n0,1,0,0,0\n", "file", "no column of time|its columns are t, qw, qx, qy, qz"),
+        ("tick,qw,qx,qy,qz\n0,1,0,0,0\n", "file", "no column of time|its columns are tick, qw, qx, qy, qz"),
         (
             "t_ns,a,b\n0,1,0\n",
             "file",
             "no attitude or angular rate that is recognised|its columns are t_ns, a, b",
+        ),
+        (
+            "t_s,roll,pitch,yaw\n0,1,0,0\n",
+            "file",
+            "roll, pitch, yaw have no unit: add euler = { columns = [\"roll\"",
+        ),
+        (
+            "t_s,wx,wy,wz\n0,1,0,0\n",
+            "file",
+            "wx, wy, wz have no unit: add angular_rate = { columns = [\"wx\"",
         ),
         ("t_ns,qw,qx,qy,qz\n", "file", "log.csv has no row, but a motion needs two"),
         ("t_ns,qw,qx,qy,qz\n0,1,0,0,0\n", "file", "has one row"),
         (
             "t_ns,qw,qx,qy,qz\n0,1,0,0,0\n1,1,nan,0,0\n",
             "file",
-            "log.csv:3: `nan` in column `qx` is no finite number",
+            "log.csv has one row, but a motion needs two (1 of 2 rows is left out: 1 without a finite value (line 3))",
         ),
         (
-            "t_ns,qw,qx,qy,qz\n0,1,0,0,0\n1,1,,0,0\n2,1,x,0,0\n",
+            "t_ns,qw,qx,qy,qz\n0,1,0,0,0\n1,1,y,0,0\n2,1,x,0,0\n",
             "file",
-            "log.csv:3: `` in column `qx` is no finite number (and another row like it)",
+            "log.csv:3: column qx: `y` is no number (and another row like it)",
         ),
         (
             "t_ns,qw,qx,qy,qz\n0,1,0,0,0\n# note\n\n1,1,0\n",
             "file",
             "log.csv:5: the row has 3 columns, the header 5",
         ),
-        ("t_ns,qw,qx,qy,qz\r\n0,1,0,0,0\r\n\r\n# note\r\n1,1,0", "file", "log.csv:5: the row has 3 columns"),
-        ("t_ns,qw,qx,qy,qz\n5,1,0,0,0\n5,1,0,0,0\n", "file", "log.csv:3: `5` in column `t_ns` is not after"),
-        ("t_ns,qw,qx,qy,qz\n5,1,0,0,0\n4,1,0,0,0\n6,1,0,0,0\n", "file", "log.csv:3: `4`"),
         (
-            "t_ns,qw,qx,qy,qz\nzero,1,0,0,0\n4,1,0,0,0\n",
+            "t_ns,qw,qx,qy,qz\r\n0,1,0,0,0\r\n\r\n# note\r\n1,1,0\r\n",
             "file",
-            "log.csv:2: `zero` in column `t_ns` is no time",
+            "log.csv:5: the row has 3 columns",
         ),
         (
-            "t_ns,qw,qx,qy,qz\n0,0,0,0,0\n4,1,0,0,0\n",
+            "t_ns,qw,qx,qy,qz\n5,1,0,0,0\n6,1,0,0,0\n0,1,0,0,0\n1,1,0,0,0\n2,1,0,0,0\n",
             "file",
-            "log.csv:2: a quaternion of length 0 is no attitude",
+            "log.csv:4: its clock steps back from the row before",
+        ),
+        ("t_ns,qw,qx,qy,qz\nzero,1,0,0,0\n4,1,0,0,0\n", "file", "log.csv:2: column t_ns: `zero` is no time"),
+        (
+            "t_ns,qw,qx,qy,qz\n0,1e-7,0,0,0\n4,1,0,0,0\n",
+            "file",
+            "log.csv:2: a quaternion of length 0.0000001 is no attitude",
+        ),
+        (
+            "time,qw,qx,qy,qz\n0,1,0,0,0\n100,1,0,0,0\n",
+            "file",
+            "`time` has no unit, and \"ms\" and \"us\" fit its rows: add time = { column = \"time\", unit = \"us\" }",
+        ),
+        (
+            &"1 0 0 0 0 1 0 0 0 0 1 0\n".repeat(3),
+            "file",
+            "log.csv is a file of KITTI poses|`replay` does not read",
         ),
     ] {
         let error = build(&values(text), &context()).expect_err(text);
@@ -381,4 +404,90 @@ fn the_mean_rate_is_the_integral_of_the_rate_across_rows() {
         }
         assert!((mean.v - sum).length() < 1e-14, "{mean:?} against {sum}");
     }
+}
+
+/// The attitude and the warnings of a log, at a time.
+fn played(text: &str, t: f64) -> (DQuat, Vec<String>) {
+    let motion = replay(text);
+    (motion.at(Attitude::IDENTITY, Double::from(t)).attitude.q, motion.warnings().to_vec())
+}
+
+#[test]
+fn rows_that_cannot_be_used_are_left_out_and_told() {
+    let row = |t: f64, w: f64, z: f64| format!("{t},{w},0,0,{z}\n");
+    let turned = |t: f64| row(t, (0.005 * t).cos(), (0.005 * t).sin());
+    let clean = format!("t_s,qw,qx,qy,qz\n{}", (0..6).map(|k| turned(f64::from(k))).collect::<String>());
+    assert_eq!(played(&clean, 1.0).1, Vec::<String>::new());
+    let second = turned(1.0);
+    for (bad, says) in [
+        (row(1.0, 1.0, 0.0), "log.csv: 1 of 7 rows is left out: 1 with the time of the row before (line 4)"),
+        (row(0.5, 1.0, 0.0), "1 older than the newest before (line 4)"),
+        ("1.5,nan,nan,nan,nan\n".into(), "1 without a finite value (line 4)"),
+        ("1.5,,,,\n".into(), "1 without a finite value (line 4)"),
+        (row(1.5, 0.0, 0.0), "1 with a quaternion of zeros (line 4)"),
+    ] {
+        let (q, warnings) = played(&clean.replacen(&second, &format!("{second}{bad}"), 1), 1.0);
+        assert!(angle_between(q, DQuat::from_rotation_z(0.01)) < 1e-9, "{bad}: {q}");
+        assert!(warnings.len() == 1 && warnings[0].contains(says), "{bad}: {warnings:?}");
+    }
+    // An angular rate of zeros is one.
+    let still = replay("t_s,wx_rad_s,wy_rad_s,wz_rad_s\n0,0,0,0\n1,0,0,0\n2,0,0,0\n");
+    assert_eq!((still.length(), still.warnings().len()), (Some(SimTime(2 * NANOS)), 0));
+}
+
+#[test]
+fn logs_of_other_programs_are_read_by_the_names_of_their_columns() {
+    let z = |angle: f64| ((0.5 * angle).cos(), (0.5 * angle).sin());
+    let rows = |row: &dyn Fn(i64, f64, f64) -> String| -> String {
+        (0..5).map(|k| row(k, z(0.1 * k as f64).0, z(0.1 * k as f64).1) + "\n").collect()
+    };
+    let euroc = "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n";
+    let euroc = euroc.to_string()
+        + &rows(&|k, w, z| format!("{},0,0,0,{w},0,0,{z}", 1_403_636_579_763_555_584 + k * 10_000_000));
+    let tum = rows(&|k, w, z| format!("{} 0 0 0 0 0 {z} {w}", 0.01 * k as f64));
+    let px4 = "timestamp,timestamp_sample,q[0],q[1],q[2],q[3]\n".to_string()
+        + &rows(&|k, w, z| format!("{},0,{w},0,0,{z}", 5_000_000 + k * 10_000));
+    for (text, says) in
+        [(&euroc, None), (&tum, None), (&px4, Some("`timestamp` has no unit and is read as us"))]
+    {
+        let (q, warnings) = played(text, 0.03);
+        assert!(angle_between(q, DQuat::from_rotation_z(0.3)) < 1e-9, "{text}: {q}");
+        let told: Vec<_> = says.into_iter().collect();
+        assert_eq!(warnings.len(), told.len(), "{warnings:?}");
+        assert!(told.iter().all(|says| warnings[0].contains(says)), "{warnings:?}");
+    }
+    // The first column of the eight is the time, and what follows is named.
+    let imu = "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n0,0,0,0.5,0,0,9.8\n1000000000,0,0,0.5,0,0,9.8\n";
+    assert!(angle_between(played(imu, 0.6).0, DQuat::from_rotation_z(0.3)) < 1e-9);
+}
+
+#[test]
+fn columns_by_number_and_a_rate_make_a_log_of_bare_numbers() {
+    let text = "1 0 0 0\n0.5 0 0 0.8660254037844386\n0.5 0 0 0.8660254037844386\n";
+    let mut by_number = values(text);
+    let numbers = ["1", "2", "3", "4"].map(String::from).to_vec();
+    by_number.insert("quaternion", Value::Columns(numbers, 1.0));
+    assert!(build(&by_number, &context()).unwrap_err().message.contains("or a rate"));
+    by_number.insert("rate", Value::Scalar(Double::from(4.0)));
+    let motion = build(&by_number, &context()).unwrap();
+    assert_eq!(motion.length(), Some(SimTime(NANOS / 2)));
+    let q = motion.at(Attitude::IDENTITY, Double::from(0.25)).attitude.q;
+    assert!(angle_between(q, DQuat::from_xyzw(0.0, 0.0, 0.75f64.sqrt(), 0.5)) < 1e-9);
+    by_number.insert("time", Value::Columns(vec!["1".into()], 1.0));
+    assert!(build(&by_number, &context()).unwrap_err().message.contains("is given beside `time`"));
+}
+
+#[test]
+fn a_position_that_moves_is_told_not_to_be_used() {
+    let log = |x: f64| format!("t_s,px_m,py_m,pz_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
+    let warnings = played(&log(0.5), 0.0).1;
+    assert!(
+        warnings.len() == 1
+            && warnings[0].starts_with("log.csv: px_m, py_m, pz_m are not used: ")
+            && warnings[0].contains("the accelerometer does not feel"),
+        "{warnings:?}"
+    );
+    assert_eq!(played(&log(0.0), 0.0).1, Vec::<String>::new(), "one that stands still changes nothing");
+    let tum = "0 0 0 0 0 0 0 1\n1 0 0 2.5 0 0 0 1\n";
+    assert!(played(tum, 0.0).1[0].contains("2, 3, 4 are not used"));
 }

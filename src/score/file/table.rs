@@ -1,279 +1,154 @@
 //! Text: a TUM trajectory, which has no header, and any other table, whose columns are found by their names.
 
-use super::{FileError, Recorded, no_rotation, timed};
-use crate::geometry::{Attitude, Axes, Euler};
+use super::{FileError, READER, Reading, Recorded, no_rotation};
+use crate::geometry::{Axes, Euler};
+use crate::score::Packed;
+use crate::table::{Attitudes, Choice, Clock, Flaw, Series, Set, Table, Wanted};
 use glam::DQuat;
+use std::io::BufRead;
 
-/// Names of the columns of a quaternion, w first.
-const QUATERNIONS: [[&str; 4]; 5] = [
-    ["qw", "qx", "qy", "qz"],
-    ["q_w", "q_x", "q_y", "q_z"],
-    ["q0", "q1", "q2", "q3"],
-    ["q[0]", "q[1]", "q[2]", "q[3]"],
-    ["w", "x", "y", "z"],
-];
-/// Names of Euler angles, and how many rad their unit is.
-const EULERS: [([&str; 3], f64); 2] = [
-    (["roll_rad", "pitch_rad", "yaw_rad"], 1.0),
-    (["roll_deg", "pitch_deg", "yaw_deg"], std::f64::consts::PI / 180.0),
-];
-/// Names of a time, before its unit.
-const TIMES: [&str; 3] = ["t", "time", "timestamp"];
-/// Units of time and how many ns they are.
-const UNITS: [(&str, f64); 4] = [("ns", 1.0), ("us", 1e3), ("ms", 1e6), ("s", 1e9)];
-/// A trajectory's columns, and those of its quaternion.
-const TUM_COLUMNS: usize = 8;
-const TUM: [usize; 4] = [7, 4, 5, 6];
-/// As many mistakes are listed.
-const LISTED: usize = 5;
-
-/// Where the attitude is in a row.
-#[derive(Clone, Copy)]
-enum Attitudes {
-    /// Columns of w, x, y, z.
-    Quaternion([usize; 4]),
-    /// Columns of roll, pitch, yaw, and their unit in rad.
-    Euler([usize; 3], f64),
-}
-
-/// What the columns of a table are.
-struct Columns {
-    names: Vec<String>,
-    /// Whether it is a trajectory, whose columns have no names.
-    is_tum: bool,
-    time: usize,
-    /// How many ns the unit of time is, where the name says so.
-    unit: Option<f64>,
-    attitudes: Attitudes,
-}
-
-/// One row as numbers, with its line.
-struct Row {
-    line: usize,
-    values: Vec<f64>,
-}
-
-pub(super) fn read(name: &str, text: &str, axes: Axes) -> Result<Recorded, FileError> {
-    let text = text.trim_start_matches('\u{feff}');
-    let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty());
-    let mut comment = None;
-    let first = loop {
-        match lines.next() {
-            Some((_, text)) if text.starts_with('#') => comment = Some(text.trim_start_matches('#')),
-            first => break first,
-        }
+pub(super) fn read<R: BufRead>(name: &str, reader: R, reading: &Reading) -> Result<Recorded, FileError> {
+    let table = Table::open(name, reader)?;
+    let choice = choice(&table, &reading.columns)?;
+    let (clock, attitudes) = match (table.clock(&choice)?, table.attitude(&choice)?) {
+        (Some(clock), Some(attitudes)) => (clock, attitudes),
+        (clock, attitudes) => return Err(lacking(&table, clock.is_some(), attitudes.is_some())),
     };
-    let Some((first, top)) = first else {
-        return Err(FileError::Content(format!("{name} is empty")));
+    let time_name = match clock {
+        Clock::Column { time, .. } => table.called(time.column),
+        Clock::Rate(_) => "rate".into(),
     };
-    let separator = [',', ';', '\t'].into_iter().find(|separator| top.contains(*separator));
-    let cells = |line: &str| -> Vec<String> {
-        match separator {
-            Some(separator) => {
-                line.split(separator).map(|cell| cell.trim().trim_matches('"').to_string()).collect()
-            }
-            None => line.split_whitespace().map(String::from).collect(),
-        }
-    };
-    let top_cells = cells(top);
-    let is_row = top_cells.iter().all(|cell| cell.parse::<f64>().is_ok());
-    let columns = if is_row { of_rows(top_cells, comment.map(cells)) } else { of_header(top_cells) };
-    let Columns { names, is_tum, time, unit, attitudes } =
-        columns.map_err(|why| FileError::Content(format!("{name}:{first}: {why}")))?;
-    let first = is_row.then_some((first, top));
-    let lines = first.into_iter().chain(lines.filter(|(_, line)| !line.starts_with('#')));
-    let mut mistakes = Vec::new();
-    let mut rows = Vec::new();
-    for (line, text) in lines {
-        match row(line, &cells(text), &names, is_tum, time, attitudes) {
-            Ok(row) => rows.push(row),
-            Err(why) => mistakes.push(format!("{name}:{line}: {why}")),
-        }
-    }
+    let axes = reading.axes;
     let mut remarks = Vec::new();
-    let unit = unit.unwrap_or_else(|| {
-        let (word, unit) = guess(&rows, time);
-        remarks.push(format!("its column `{}` is read as {word}", names[time]));
-        unit
-    });
-    let estimates = estimates(name, &rows, time, unit, attitudes, axes, &mut mistakes);
-    if !mistakes.is_empty() {
-        return Err(FileError::Content(listed(mistakes)));
-    }
-    if estimates.is_empty() {
-        return Err(FileError::Content(format!("{name} has a header and no rows")));
-    }
-    let others = match attitudes {
-        Attitudes::Euler(_, 1.0) => {
-            let degrees = |row: &Row| attitude(row, scaled(attitudes), axes);
-            vec![("in degrees read as radians", rows.iter().map(degrees).collect())]
-        }
-        _ => Vec::new(),
-    };
-    Ok(Recorded { estimates, axes, others, remarks })
-}
-
-/// The same angles, were they in degrees.
-fn scaled(attitudes: Attitudes) -> Attitudes {
     match attitudes {
-        Attitudes::Euler(columns, unit) => Attitudes::Euler(columns, unit.to_radians()),
-        other => other,
+        Attitudes::Quaternion(set) => {
+            tell_others(&table, &set, &mut remarks);
+            let make = |[w, x, y, z]: &[f64; 4]| match DQuat::from_xyzw(*x, *y, *z, *w) {
+                q if q.length() < 1e-9 => Err(Flaw::Zero),
+                q => match no_rotation(q) {
+                    None => Ok(Packed::new(axes.attitude_in(q.normalize()).q)),
+                    Some(why) => Err(Flaw::Wrong(why)),
+                },
+            };
+            let series = table.read(&Wanted::new(clock, set.columns), make)?;
+            let recorded = recorded(name, series, remarks)?;
+            Ok(Recorded { time_name, axes, ..recorded })
+        }
+        Attitudes::Euler(set) => {
+            let unit = unit_of_angles(&table, &set, &mut remarks)?;
+            tell_others(&table, &set, &mut remarks);
+            let mut series = table.read(&Wanted::new(clock, set.columns), |angles| Ok(*angles))?;
+            let angles = std::mem::take(&mut series.values);
+            let all = |unit: f64| angles.iter().map(|angles| euler(angles, unit, axes)).collect::<Vec<_>>();
+            let others = match unit {
+                1.0 => vec![("in degrees read as radians", all(1f64.to_radians()))],
+                _ => Vec::new(),
+            };
+            let series = series.with(all(unit));
+            let recorded = recorded(name, series, remarks)?;
+            Ok(Recorded { time_name, axes, others, ..recorded })
+        }
     }
 }
 
-/// By a first line of names.
-fn of_header(names: Vec<String>) -> Result<Columns, String> {
-    let (time, unit, attitudes) = find(&names)?;
-    Ok(Columns { names, is_tum: false, time, unit, attitudes })
+/// What a series amounts to, in no axes yet.
+fn recorded(name: &str, series: Series<Packed>, mut remarks: Vec<String>) -> Result<Recorded, FileError> {
+    let told = series.rows.told();
+    if series.values.is_empty() {
+        return Err(FileError::Content(match told {
+            Some(told) => format!("{name} has no row that can be used: {told}"),
+            None => format!("{name} has a header and no rows"),
+        }));
+    }
+    remarks.extend(told);
+    remarks.extend(series.remarks);
+    if let Some(first) = series.times.breaks.first() {
+        let more = series.times.breaks.len() - 1;
+        let more = if more > 0 { format!(" (and {more} more times)") } else { String::new() };
+        let line = series.lines[*first];
+        remarks.push(format!("its clock steps back in line {line} and goes on from there{more}"));
+    }
+    Ok(Recorded {
+        attitudes: series.values,
+        times: series.times,
+        time_name: String::new(),
+        axes: Axes::default(),
+        others: Vec::new(),
+        remarks,
+        rows: series.rows,
+    })
 }
 
-/// Where the first line is a row: by the comment above it if that has the names, as NumPy writes them; else eight
-/// columns are a trajectory.
-fn of_rows(row: Vec<String>, above: Option<Vec<String>>) -> Result<Columns, String> {
-    let above = above.filter(|above| above.len() == row.len());
-    let named = above.and_then(|above| of_header(above).ok());
-    match named {
-        Some(columns) if !matches!(columns.attitudes, Attitudes::Quaternion(TUM)) => Ok(columns),
-        _ if row.len() == TUM_COLUMNS => Ok(Columns {
-            names: row,
-            is_tum: true,
-            time: 0,
-            unit: Some(1e9),
-            attitudes: Attitudes::Quaternion(TUM),
-        }),
-        Some(columns) => Ok(columns),
-        None => Err(
-            "is a row of numbers and not the header that a table begins with: t_s, qw, qx, qy, qz, or roll_deg, pitch_deg, yaw_deg"
-                .into(),
+fn euler([roll, pitch, yaw]: &[f64; 3], unit: f64, axes: Axes) -> Packed {
+    let angles = Euler { roll: roll * unit, pitch: pitch * unit, yaw: yaw * unit };
+    Packed::new(axes.attitude_in(angles.to_quat().normalize()).q)
+}
+
+/// What of the user's choice concerns this table: columns that it has by these names, and all where its own names say
+/// nothing.
+fn choice<R: BufRead>(table: &Table<R>, given: &Choice) -> Result<Choice, FileError> {
+    let own = Choice::default();
+    let has = |names: &[String]| names.iter().all(|name| table.has(name));
+    let knows_time = table.clock(&own)?.is_some();
+    let knows_attitude = table.attitude(&own)?.is_some();
+    let time = given.time.clone().filter(|name| !knows_time || has(std::slice::from_ref(name)));
+    Ok(Choice {
+        rate: given.rate.filter(|_| !knows_time && time.is_none()),
+        time_unit: given.time_unit.filter(|_| time.is_some()),
+        time,
+        quaternion: given.quaternion.clone().filter(|names| !knows_attitude || has(names)),
+        euler: given.euler.clone().filter(|(names, _)| !knows_attitude || has(names)),
+    })
+}
+
+/// How many rad the unit of angles is.
+fn unit_of_angles<R>(table: &Table<R>, set: &Set<3>, remarks: &mut Vec<String>) -> Result<f64, FileError>
+where
+    R: BufRead,
+{
+    if let Some((what, unit)) = set.by_kind.zip(set.unit) {
+        let unit = if unit == 1.0 { "rad" } else { "deg" };
+        remarks.push(format!("its angles are read as {unit}: {what}"));
+    }
+    let [roll, pitch, yaw] = set.columns.map(|column| table.called(column));
+    set.unit.ok_or_else(|| {
+        FileError::Content(format!(
+            "{}: {roll}, {pitch} and {yaw} have no unit: call them roll_deg, pitch_deg, yaw_deg or roll_rad, …, or write --euler {roll},{pitch},{yaw}:deg",
+            table.place()
+        ))
+    })
+}
+
+/// That other columns could have been meant.
+fn tell_others<R: BufRead, const N: usize>(table: &Table<R>, set: &Set<N>, remarks: &mut Vec<String>) {
+    if !set.others.is_empty() {
+        let (first, others) = (table.called(set.columns[0]), set.others.join(", "));
+        remarks
+            .push(format!("its attitude is read from the columns of `{first}`, not from those of {others}"));
+    }
+}
+
+/// What a table lacks, and how to say what is meant.
+fn lacking<R: BufRead>(table: &Table<R>, has_time: bool, has_attitude: bool) -> FileError {
+    if let Some(kind) = table.kind() {
+        let name = table.place();
+        let name = name.rsplit_once(':').map_or(name.as_str(), |(name, _)| name);
+        return FileError::Content(kind.refusal(name, READER));
+    }
+    let (place, told) = (table.place(), table.told());
+    let choose = "or choose them by name or number from 1 with --time and --quaternion or --euler";
+    FileError::Content(match (has_time, has_attitude) {
+        _ if !table.is_headed() => format!(
+            "{place}: is a row of numbers and not the header that a table begins with: t_s, qw, qx, qy, qz, or roll_deg, pitch_deg, yaw_deg; write one, {choose}"
         ),
-    }
-}
-
-/// The columns of a header: time, how many ns its unit is where it says so, and attitude.
-fn find(names: &[String]) -> Result<(usize, Option<f64>, Attitudes), String> {
-    let place = |wanted: &str| names.iter().position(|name| name.eq_ignore_ascii_case(wanted));
-    let with_unit =
-        TIMES.iter().flat_map(|time| UNITS.map(|(word, ns)| (format!("{time}_{word}"), Some(ns))));
-    let bare = TIMES.iter().map(|time| (time.to_string(), None));
-    let time = with_unit.chain(bare).find_map(|(name, ns)| Some((place(&name)?, ns)));
-    let quaternion = QUATERNIONS.iter().find_map(|set| {
-        let [w, x, y, z] = set.map(place);
-        Some(Attitudes::Quaternion([w?, x?, y?, z?]))
-    });
-    let euler = || {
-        EULERS.iter().find_map(|(set, unit)| {
-            let [roll, pitch, yaw] = set.map(place);
-            Some(Attitudes::Euler([roll?, pitch?, yaw?], *unit))
-        })
-    };
-    let attitude = quaternion.or_else(euler);
-    let has = names.join(", ");
-    match (time, attitude) {
-        (Some((time, ns)), Some(attitude)) => Ok((time, ns, attitude)),
-        (_, None) if ["roll", "pitch", "yaw"].iter().all(|name| place(name).is_some()) => {
-            Err("roll, pitch and yaw have no unit: call them roll_deg, pitch_deg, yaw_deg or roll_rad, …"
-                .into())
-        }
-        (Some(_), None) => Err(format!(
-            "has no attitude: qw, qx, qy, qz or roll_deg, pitch_deg, yaw_deg (or …_rad); its columns are {has}"
-        )),
-        (None, Some(_)) => {
-            Err(format!("has no time: t_ns, t_us, t_ms, t_s, time or timestamp; its columns are {has}"))
-        }
-        (None, None) => Err(format!(
-            "has neither time nor attitude: t_ns or t_s, and qw, qx, qy, qz or roll_deg, pitch_deg, yaw_deg; \
-             its columns are {has}"
-        )),
-    }
-}
-
-fn row(
-    line: usize,
-    cells: &[String],
-    names: &[String],
-    is_tum: bool,
-    time: usize,
-    attitudes: Attitudes,
-) -> Result<Row, String> {
-    if cells.len() != names.len() {
-        return Err(format!("the row has {} columns, the first {}", cells.len(), names.len()));
-    }
-    let wanted: Vec<usize> = match attitudes {
-        Attitudes::Quaternion(columns) => columns.into_iter().chain([time]).collect(),
-        Attitudes::Euler(columns, _) => columns.into_iter().chain([time]).collect(),
-    };
-    let mut values = vec![0.0; cells.len()];
-    for column in wanted {
-        let number = cells[column].parse::<f64>().ok().filter(|number| number.is_finite());
-        let place =
-            if is_tum { format!("column {}", column + 1) } else { format!("column {}", names[column]) };
-        values[column] = number.ok_or_else(|| format!("{place}: `{}` is no number", cells[column]))?;
-    }
-    Ok(Row { line, values })
-}
-
-/// What a time without a unit is in: seconds if it has a fraction, else by how far apart rows are.
-fn guess(rows: &[Row], time: usize) -> (&'static str, f64) {
-    let times: Vec<f64> = rows.iter().map(|row| row.values[time]).collect();
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_unstable_by(f64::total_cmp);
-    let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    match step {
-        _ if times.iter().any(|t| t.fract() != 0.0) => ("s", 1e9),
-        50_000.0.. => ("ns", 1.0),
-        50.0.. => ("µs", 1e3),
-        2.0.. => ("ms", 1e6),
-        _ => ("s", 1e9),
-    }
-}
-
-fn attitude(row: &Row, attitudes: Attitudes, axes: Axes) -> Attitude {
-    axes.attitude_in(quaternion(row, attitudes).normalize())
-}
-
-fn quaternion(row: &Row, attitudes: Attitudes) -> DQuat {
-    match attitudes {
-        Attitudes::Quaternion(columns) => {
-            let [w, x, y, z] = columns.map(|column| row.values[column]);
-            DQuat::from_xyzw(x, y, z, w)
-        }
-        Attitudes::Euler(columns, unit) => {
-            let [roll, pitch, yaw] = columns.map(|column| row.values[column] * unit);
-            Euler { roll, pitch, yaw }.to_quat()
-        }
-    }
-}
-
-fn estimates(
-    name: &str,
-    rows: &[Row],
-    time: usize,
-    unit: f64,
-    attitudes: Attitudes,
-    axes: Axes,
-    mistakes: &mut Vec<String>,
-) -> Vec<super::Timed> {
-    let mut last = f64::NEG_INFINITY;
-    let mut estimates = Vec::with_capacity(rows.len());
-    for row in rows {
-        let t = row.values[time];
-        let out_of_order =
-            (t < last).then(|| format!("its time {t} is before {last}, that of the row before"));
-        last = last.max(t);
-        let wrong = no_rotation(quaternion(row, attitudes)).or(out_of_order);
-        mistakes.extend(wrong.map(|why| format!("{name}:{}: {why}", row.line)));
-        estimates.push(timed(libm::round(t * unit) as i64, attitude(row, attitudes, axes)));
-    }
-    estimates
-}
-
-/// Every mistake a line, of very many the first.
-fn listed(mut mistakes: Vec<String>) -> String {
-    let more = mistakes.len().saturating_sub(LISTED);
-    mistakes.truncate(LISTED);
-    if more > 0 {
-        mistakes.push(format!("and {more} more rows"));
-    }
-    mistakes.join("\n")
+        (true, _) => format!(
+            "{place}: has no attitude: qw, qx, qy, qz or roll_deg, pitch_deg, yaw_deg (or …_rad); {told}; choose some by name or number from 1 with --quaternion or --euler"
+        ),
+        (false, true) => format!(
+            "{place}: has no time: t_ns, t_us, t_ms, t_s, time or timestamp; {told}; choose one by name or number from 1 with --time, or give --rate"
+        ),
+        (false, false) => format!(
+            "{place}: has neither time nor attitude: t_ns or t_s, and qw, qx, qy, qz or roll_deg, pitch_deg, yaw_deg; {told}; {choose}"
+        ),
+    })
 }

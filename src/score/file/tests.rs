@@ -9,7 +9,8 @@ fn attitude(k: i64) -> Attitude {
 }
 
 fn wrote(text: &str, axes: Axes) -> Result<Recorded, String> {
-    table::read("x.csv", text, axes).map_err(|error| error.to_string())
+    table::read("x.csv", text.as_bytes(), &Reading { axes, ..Reading::default() })
+        .map_err(|error| error.to_string())
 }
 
 /// Ten rows by their number, under a header.
@@ -18,9 +19,17 @@ fn rows(header: &str, row: impl Fn(i64) -> String) -> String {
     format!("{header}\n{}\n", rows.join("\n"))
 }
 
+/// What is recorded, with its times in the likeliest unit.
+fn timed(recorded: &Recorded) -> Vec<Timed> {
+    let times = recorded.times.in_ns(recorded.times.guess().0).unwrap();
+    let one =
+        |(t, q): (i64, &Packed)| Timed { arrival: SimTime(t), stamp: Stamp::Arrival, attitude: q.attitude() };
+    times.into_iter().zip(&recorded.attitudes).map(one).collect()
+}
+
 fn same(recorded: &Recorded, step: i64) {
-    assert_eq!(recorded.estimates.len(), 10);
-    for (k, estimate) in recorded.estimates.iter().enumerate() {
+    assert_eq!(timed(recorded).len(), 10);
+    for (k, estimate) in timed(recorded).iter().enumerate() {
         let k = k as i64;
         assert_eq!((estimate.arrival.0, estimate.stamp), (k * step, Stamp::Arrival));
         assert!(estimate.attitude.angle_to(attitude(k)) < 1e-12, "{k}");
@@ -74,24 +83,24 @@ fn axes_are_those_it_is_said_to_be_written_in() {
         format!("{},{},{},{},{}", k * 1000, q.w, q.x, q.y, q.z)
     });
     same(&wrote(&text, Axes::EnuFlu).unwrap(), 1_000_000);
-    let other = wrote(&text, Axes::NedFrd).unwrap().estimates[0].attitude;
+    let other = wrote(&text, Axes::NedFrd).unwrap().attitudes[0].attitude();
     assert!(other.angle_to(attitude(0)) > 1.0, "and not any others");
 }
 
 #[test]
-fn a_time_without_a_unit_is_guessed_and_told() {
-    for (times, step, says) in [
-        (["0.0", "0.01", "0.02"], 10_000_000, "read as s"),
-        (["0", "10", "20"], 10_000_000, "read as ms"),
-        (["0", "10000", "20000"], 10_000_000, "read as µs"),
-        (["0", "10000000", "20000000"], 10_000_000, "read as ns"),
-        (["7", "8", "9"], 1_000_000_000, "read as s"),
+fn a_time_without_a_unit_is_in_none_and_the_likeliest_is_known() {
+    for (times, step) in [
+        (["0.0", "0.01", "0.02"], 10_000_000),
+        (["0", "10", "20"], 10_000_000),
+        (["0", "10000", "20000"], 10_000_000),
+        (["0", "10000000", "20000000"], 10_000_000),
+        (["7", "8", "9"], 1_000_000_000),
     ] {
         let text = format!("time,w,x,y,z\n{},1,0,0,0\n{},1,0,0,0\n{},1,0,0,0", times[0], times[1], times[2]);
         let recorded = wrote(&text, Axes::NedFrd).unwrap();
-        let [a, b] = [0, 1].map(|i| recorded.estimates[i].arrival.0);
-        assert_eq!(b - a, step, "{times:?}");
-        assert!(recorded.remarks[0].contains(says), "{:?}", recorded.remarks);
+        let [a, b] = [0, 1].map(|i| timed(&recorded)[i].arrival.0);
+        assert_eq!((b - a, recorded.times.unit), (step, None), "{times:?}");
+        assert_eq!(recorded.time_name, "time");
     }
 }
 
@@ -101,7 +110,9 @@ fn angles_in_rad_can_be_read_as_degrees() {
     let recorded = wrote(&text, Axes::NedFrd).unwrap();
     let (name, attitudes) = &recorded.others[0];
     let [roll, pitch, yaw] = [12f64, -8.0, 28.0].map(f64::to_radians);
-    assert!(attitudes[4].angle_to(Attitude::from_quat(Euler { roll, pitch, yaw }.to_quat())) < 1e-12);
+    assert!(
+        attitudes[4].attitude().angle_to(Attitude::from_quat(Euler { roll, pitch, yaw }.to_quat())) < 1e-12
+    );
     assert!(name.contains("degrees"));
 }
 
@@ -117,10 +128,10 @@ fn every_mistake_has_its_place_and_what_would_be_right() {
         ("qw,qx,qy,qz\n1,0,0,0", "has no time: t_ns"),
         ("t_s,roll,pitch,yaw\n1,2,3,4", "no unit: call them roll_deg"),
         ("t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,zero,0", "x.csv:3: column qy: `zero` is no number"),
-        ("t_s,qw,qx,qy,qz\n0,1,0,0\n", "x.csv:2: the row has 4 columns, the first 5"),
+        ("t_s,qw,qx,qy,qz\n0,1,0,0\n", "x.csv:2: the row has 4 columns, the header 5"),
         ("t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,2,0,0,0", "x.csv:3: a quaternion of length 2"),
-        ("t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,nan,0,0,0", "`nan` is no number"),
-        ("t_s,qw,qx,qy,qz\n5,1,0,0,0\n4,1,0,0,0", "x.csv:3: its time 4 is before 5"),
+        ("t_s,qw,qx,qy,qz\n0,nan,0,0,0\n1,0,0,0,0", "no row that can be used: 2 of 2 rows are left out"),
+        ("t_s,qw,qx,qy,qz\n0,nan\n", "x.csv:2: the row has 2 columns, the header 5"),
         ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 x 1", "x.csv:2: column 7: `x`"),
     ] {
         let message = wrote(text, Axes::NedFrd).expect_err(text);
@@ -172,8 +183,8 @@ fn read_log(bytes: &[u8]) -> Result<Recorded, String> {
 #[test]
 fn a_ulog_gives_its_first_vehicle_attitude_at_the_samples_time() {
     let recorded = read_log(&log(412_000_000, "vehicle_attitude")).unwrap();
-    assert_eq!((recorded.estimates.len(), recorded.axes), (10, Axes::NedFrd));
-    for (k, estimate) in recorded.estimates.iter().enumerate() {
+    assert_eq!((recorded.attitudes.len(), recorded.axes), (10, Axes::NedFrd));
+    for (k, estimate) in timed(&recorded).iter().enumerate() {
         assert_eq!(estimate.arrival.0, 412_000_000_000 + k as i64 * 10_000_000);
         // Single precision.
         assert!(estimate.attitude.angle_to(attitude(k as i64)) < 1e-6);
@@ -185,7 +196,7 @@ fn a_ulog_gives_its_first_vehicle_attitude_at_the_samples_time() {
 fn a_ulog_that_breaks_off_is_read_as_far_as_it_goes_and_no_bytes_panic() {
     let whole = log(5, "vehicle_attitude");
     let cut = read_log(&whole[..whole.len() - 30]).unwrap();
-    assert!(cut.estimates.len() == 9 || cut.estimates.len() == 10);
+    assert!(cut.attitudes.len() == 9 || cut.attitudes.len() == 10);
     assert!(cut.remarks[0].contains("breaks off"), "{:?}", cut.remarks);
     let other = read_log(&log(5, "vehicle_attitude_setpoint")).unwrap_err();
     assert!(
@@ -204,4 +215,83 @@ fn bytes_that_are_nothing_are_told() {
     assert!(read_log(&[0xff; 99]).unwrap_err().contains("neither text nor a ULog"));
     let missing = read(Path::new("/nowhere/x.csv"), Axes::NedFrd).unwrap_err().to_string();
     assert!(missing.contains("/nowhere/x.csv") && missing.contains("cannot read"));
+}
+
+#[test]
+fn one_record_of_a_ulog_that_is_not_finite_is_left_out_and_told() {
+    let whole = log(412_000_000, "vehicle_attitude");
+    let clean = read_log(&whole).unwrap();
+    // The quaternion of the fourth attitude of the first instance: its w follows two stamps.
+    let stamp = (412_030_000_u64).to_le_bytes();
+    let place = whole.windows(8).position(|bytes| bytes == (412_030_700_u64).to_le_bytes()).unwrap();
+    assert_eq!(whole[place + 8..place + 16], stamp);
+    for (bad, left) in [(f32::NAN, 1), (f32::INFINITY, 1)] {
+        let mut bytes = whole.clone();
+        bytes[place + 16..place + 20].copy_from_slice(&bad.to_le_bytes());
+        let recorded = read_log(&bytes).unwrap();
+        assert_eq!((recorded.rows.read, recorded.rows.left_out.not_finite), (10, left));
+        assert_eq!(recorded.attitudes.len(), clean.attitudes.len() - 1);
+        assert!(!timed(&recorded).iter().any(|estimate| estimate.arrival.0 == 412_030_000_000));
+        assert!(recorded.remarks[0].starts_with("1 of 10 rows is left out"), "{:?}", recorded.remarks);
+    }
+    let mut bytes = whole;
+    bytes[place + 16..place + 20].copy_from_slice(&7f32.to_le_bytes());
+    assert!(
+        read_log(&bytes).unwrap_err().contains("a quaternion of length 7"),
+        "what is no rotation is a mistake"
+    );
+}
+
+#[test]
+fn chosen_columns_are_read_and_leave_a_table_that_names_its_own_alone() {
+    let own = rows("t_s,qw,qx,qy,qz", |k| {
+        let q = attitude(k).q;
+        format!("{},{},{},{},{}", k as f64 * 0.01, q.w, q.x, q.y, q.z)
+    });
+    let foreign = own.replace("t_s,qw,qx,qy,qz", "when,a,b,c,d");
+    let unnamed = own.replace("t_s,qw,qx,qy,qz\n", "");
+    let reading = |time: &str, quaternion: [&str; 4]| Reading {
+        columns: Choice {
+            time: Some(time.into()),
+            quaternion: Some(quaternion.map(String::from)),
+            ..Choice::default()
+        },
+        ..Reading::default()
+    };
+    let by_number = reading("1", ["2", "3", "4", "5"]);
+    for (text, reading) in [
+        (&own, Reading::default()),
+        (&own, reading("7", ["9", "9", "9", "9"])),
+        (&foreign, reading("when", ["a", "b", "c", "d"])),
+        (&foreign, by_number.clone()),
+        (&unnamed, by_number),
+    ] {
+        same(&table::read("x.csv", text.as_bytes(), &reading).unwrap(), 10_000_000);
+    }
+    let error = table::read("x.csv", foreign.as_bytes(), &reading("when", ["a", "b", "c", "e"])).unwrap_err();
+    assert!(error.to_string().contains("has no column `e`; its columns are when, a"), "{error}");
+}
+
+#[test]
+fn a_file_of_another_kind_is_named_with_what_would_help() {
+    let kitti: String = (0..5).map(|k| format!("1 0 0 {k} 0 1 0 0 0 0 1 0\n")).collect();
+    for (bytes, says) in [
+        (
+            &b"\xa3\x95\x80\x80FMT"[..],
+            "an ArduPilot DataFlash log (.BIN) (recognised by its first bytes), which `score` does not read|mavlogdump",
+        ),
+        (
+            &[&1_700_000_000_000_000u64.to_be_bytes()[..], &[0xfd, 9, 0, 0, 0, 1, 1, 0, 0, 0]].concat(),
+            "a MAVLink log with times (.tlog)|--types ATTITUDE",
+        ),
+        (b"PAR1\x15\x04", "a Parquet file|to_csv"),
+        (kitti.as_bytes(), "KITTI poses (recognised by its twelve numbers a row|it has no times"),
+    ] {
+        let message = read_log(bytes).unwrap_err();
+        assert!(says.split('|').all(|says| message.contains(says)), "{message}");
+        assert!(
+            message.contains("it reads tables with a header, TUM trajectories and PX4 ULogs"),
+            "{message}"
+        );
+    }
 }

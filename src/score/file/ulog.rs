@@ -1,10 +1,13 @@
 //! PX4's ULog: the topic `vehicle_attitude`, quaternion w first, body (FRD) to nav (NED), time in µs since boot.
 //!
 //! Format: docs.px4.io, "ULog File Format". The first instance of the topic is read; its time is that of the sample the
-//! estimate rests on (`timestamp_sample`) where the log has it, else that of publication.
+//! estimate rests on (`timestamp_sample`) where the log has it, else that of publication. Records without a finite
+//! attitude are left out and counted.
 
-use super::{FileError, Recorded, no_rotation, timed};
-use crate::geometry::{Attitude, Axes};
+use super::{FileError, Recorded, no_rotation};
+use crate::geometry::Axes;
+use crate::score::Packed;
+use crate::table::{Rows, Series, TICKS, TimeUnit};
 use glam::DQuat;
 use px4_ulog::stream_parser::model::{Completeness, FlattenedFormat};
 use px4_ulog::stream_parser::{DataMessage, Message, SimpleCallbackResult, read_file_with_simple_callback};
@@ -20,7 +23,7 @@ pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
     let content = |why: String| FileError::Content(format!("{}: {why}", path.display()));
     let name = path.to_str().ok_or_else(|| content("its name is no UTF-8; rename it".into()))?;
     let mut topics = BTreeSet::new();
-    let mut rows = Vec::new();
+    let (mut ticks, mut attitudes, mut not_finite) = (Vec::new(), Vec::new(), 0);
     let mut problem = None;
     let ended = read_file_with_simple_callback(name, &mut |message| {
         let Message::Data(data) = message else { return SimpleCallbackResult::KeepReading };
@@ -31,7 +34,11 @@ pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
             }
         } else if data.multi_id.value() == 0 {
             match row(data) {
-                Ok((t, q)) => rows.push((t, q)),
+                Ok((t, Some(attitude))) => {
+                    ticks.push(i128::from(t) * TICKS);
+                    attitudes.push(attitude);
+                }
+                Ok((_, None)) => not_finite += 1,
                 Err(why) => problem = problem.take().or(Some(why)),
             }
         }
@@ -41,24 +48,38 @@ pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
     if let Some(why) = problem {
         return Err(content(format!("{TOPIC}: {why}")));
     }
-    if rows.is_empty() {
+    if attitudes.is_empty() {
+        if not_finite > 0 {
+            return Err(content(format!("{TOPIC}: none of its {not_finite} records has a finite attitude")));
+        }
         let there = topics.into_iter().collect::<Vec<_>>().join(", ");
         let there = if there.is_empty() { "none".into() } else { there };
         return Err(content(format!("has no topic {TOPIC} with an attitude in it; its topics are: {there}")));
     }
-    let remarks = match ended {
+    let mut remarks = match ended {
         Completeness::Complete => Vec::new(),
         _ => vec![format!(
             "the log breaks off in the middle: the {} attitudes before that are read",
-            rows.len()
+            attitudes.len()
         )],
     };
-    let estimates = rows.into_iter().map(|(t, q)| timed(t, Attitude::from_quat(q.normalize()))).collect();
-    Ok(Recorded { estimates, axes: Axes::NedFrd, others: Vec::new(), remarks })
+    let rows = Rows::records(attitudes.len() + not_finite, not_finite);
+    let series = Series::of_records(ticks, attitudes, TimeUnit::Us, rows);
+    remarks.extend(series.rows.told());
+    remarks.extend(series.remarks);
+    Ok(Recorded {
+        attitudes: series.values,
+        times: series.times,
+        time_name: "timestamp".into(),
+        axes: Axes::NedFrd,
+        others: Vec::new(),
+        remarks,
+        rows: series.rows,
+    })
 }
 
-/// Time in ns and attitude of one record.
-fn row(data: &DataMessage<'_>) -> Result<(i64, DQuat), String> {
+/// Time in µs and attitude of one record; none where it is not finite or all zero.
+fn row(data: &DataMessage<'_>) -> Result<(u64, Option<Packed>), String> {
     let format = data.flattened_format;
     let bytes = data.data;
     let [w, x, y, z] = [0, 1, 2, 3].map(|i| float(format, bytes, &format!("q[{i}]")));
@@ -66,9 +87,16 @@ fn row(data: &DataMessage<'_>) -> Result<(i64, DQuat), String> {
     let sampled = micros(format, bytes, "timestamp_sample").filter(|&t| t > 0);
     let t =
         sampled.or_else(|| micros(format, bytes, "timestamp")).ok_or("its records have no `timestamp`")?;
-    let ns = i64::try_from(t).ok().and_then(|t| t.checked_mul(1000));
-    let ns = ns.ok_or_else(|| format!("a timestamp of {t} µs is no time since boot"))?;
-    no_rotation(q).map_or(Ok((ns, q)), |why| Err(format!("at {t} µs: {why}")))
+    if i64::try_from(t).ok().and_then(|t| t.checked_mul(1000)).is_none() {
+        return Err(format!("a timestamp of {t} µs is no time since boot"));
+    }
+    if !q.is_finite() || q.length() < 1e-9 {
+        return Ok((t, None));
+    }
+    match no_rotation(q) {
+        None => Ok((t, Some(Packed::new(q.normalize())))),
+        Some(why) => Err(format!("at {t} µs: {why}")),
+    }
 }
 
 fn float(format: &FlattenedFormat, bytes: &[u8], name: &str) -> Result<f64, String> {

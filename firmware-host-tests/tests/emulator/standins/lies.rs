@@ -120,7 +120,12 @@ fn wrong_readings_do_not_pass() {
                 all.map(|(at, packet)| (at, doctor(case.make, &packet, &mut |v| wrong(v)))).collect()
             });
             let figures = judge(&plan, &own(&told.record, told.scene_us));
-            assert!(figures.errors.rms_deg > BOUND_DEG, "{}, {what}: {} deg", case.make, figures.errors.rms_deg);
+            assert!(
+                figures.errors.rms_deg > BOUND_DEG,
+                "{}, {what}: {} deg",
+                case.make,
+                figures.errors.rms_deg
+            );
         }
     }
 }
