@@ -110,7 +110,7 @@ fn a_clock_ahead_is_found_whatever_else_is_wrong() {
     let rows = read::truth(&truth).unwrap().attitudes;
     let ahead = |seconds: f64, change: &dyn Fn(DQuat) -> DQuat| {
         let mut text = String::from("t_s,qw,qx,qy,qz\n");
-        for (t, Attitude { q }) in rows.iter().step_by(16) {
+        for (t, Attitude { q, .. }) in rows.iter().step_by(16) {
             text += &row(t.seconds() + seconds, change(*q));
         }
         text
