@@ -1,6 +1,7 @@
 //! The report of a run as a person reads it.
 
-use crate::report::{AttitudeReport, HeardReport, Report, number, table};
+use crate::cli::terminal::Stream;
+use crate::report::{AttitudeReport, HeardReport, Report, number};
 use crate::score::DelayKnown;
 use crate::session::Outcome;
 use crate::time::SimTime;
@@ -105,7 +106,7 @@ fn sensors(report: &Report) -> String {
         }
         row
     });
-    table(&heading, &rows.collect::<Vec<_>>())
+    Stream::Err.table(&heading, &rows.collect::<Vec<_>>())
 }
 
 fn links(report: &Report) -> String {
@@ -123,7 +124,7 @@ fn links(report: &Report) -> String {
             load,
         ]
     });
-    table(
+    Stream::Err.table(
         &["link", "packets", "bytes", "dropped", "missed by receiver", "most waiting", "of baud rate"],
         &rows.collect::<Vec<_>>(),
     )
@@ -196,5 +197,5 @@ fn heard_sensors(report: &HeardReport) -> String {
         }
         row
     });
-    table(&heading, &rows.collect::<Vec<_>>())
+    Stream::Err.table(&heading, &rows.collect::<Vec<_>>())
 }

@@ -1,6 +1,7 @@
 //! The comparison as a person reads it.
 
-use crate::report::{ScoreReport, Scored, number, table};
+use crate::cli::terminal::Stream;
+use crate::report::{ScoreReport, Scored, number};
 use crate::score::DelayKnown;
 
 pub(super) fn report(report: &ScoreReport) -> String {
@@ -21,7 +22,7 @@ pub(super) fn report(report: &ScoreReport) -> String {
         row.push(f.delay_ms.map_or("-".into(), number));
         row
     };
-    let mut text = table(&heading, &report.estimates.iter().map(row).collect::<Vec<_>>());
+    let mut text = Stream::Err.table(&heading, &report.estimates.iter().map(row).collect::<Vec<_>>());
     for scored in &report.estimates {
         for note in notes(scored) {
             text += &format!("{}: {note}\n", scored.name);

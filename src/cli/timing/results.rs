@@ -1,7 +1,8 @@
 //! From what was measured to the report, as JSON and as a person reads it.
 
 use super::{Measured, Refusal, run};
-use crate::report::{Baseline, Late, Limit, SensorReport, SensorTiming, Spread, TimingReport, number, table};
+use crate::cli::terminal::Stream;
+use crate::report::{Baseline, Late, Limit, SensorReport, SensorTiming, Spread, TimingReport, number};
 use crate::scene::{Output, Plan};
 use crate::session::Speed;
 use std::slice::from_ref;
@@ -134,7 +135,7 @@ fn sensors(report: &TimingReport) -> String {
         "missed",
         "overdue",
     ];
-    table(&heading, &report.run.sensors.iter().map(row).collect::<Vec<_>>()) + "\n"
+    Stream::Err.table(&heading, &report.run.sensors.iter().map(row).collect::<Vec<_>>()) + "\n"
 }
 
 fn lateness(report: &TimingReport) -> String {
@@ -160,7 +161,7 @@ fn lateness(report: &TimingReport) -> String {
     let bare = cells(report.baseline.late_us.map(late));
     rows.push([vec!["bare timer".to_string()], bare.into(), ["-"; 3].map(String::from).into()].concat());
     let heading = ["late µs", "p50", "p99", "p99.9", "max", "interval std", "transit p50", "p99"];
-    table(&heading, &rows)
+    Stream::Err.table(&heading, &rows)
 }
 
 fn ratio(report: &TimingReport) -> String {
