@@ -51,6 +51,13 @@ impl<'a> Column<'a> {
             is_number,
         }
     }
+
+    /// By width, from the least to the natural one: how many lines the heading and each cell take.
+    fn heights(&self) -> Vec<Vec<usize>> {
+        let of =
+            |width| [self.heading].iter().chain(&self.cells).map(|cell| wrap(cell, width).len()).collect();
+        (self.least..=self.natural).map(of).collect()
+    }
 }
 
 fn chars(text: &str) -> usize {
@@ -127,19 +134,44 @@ fn laid_out(columns: &[&Column<'_>], width: usize) -> String {
     text
 }
 
-/// What each column gets: what it needs at the least, then those that want little more before those that want much.
+/// What each column gets: all that it wants where that fits, else what it needs at the least, and of the rest what
+/// spares most lines.
 fn widths(columns: &[&Column<'_>], width: usize) -> Vec<usize> {
-    let mut widths: Vec<_> = columns.iter().map(|column| column.least).collect();
-    let gaps = GAP * columns.len().saturating_sub(1);
-    let mut spare = width.saturating_sub(widths.iter().sum::<usize>() + gaps);
-    let mut wanting: Vec<_> = (0..columns.len()).collect();
-    wanting.sort_by_key(|&i| columns[i].natural - columns[i].least);
-    for i in wanting {
-        let more = (columns[i].natural - columns[i].least).min(spare);
-        widths[i] += more;
-        spare -= more;
+    let room = width.saturating_sub(GAP * columns.len().saturating_sub(1));
+    let natural: Vec<_> = columns.iter().map(|column| column.natural).collect();
+    if natural.iter().sum::<usize>() <= room {
+        return natural;
     }
-    widths
+    let heights: Vec<Vec<Vec<usize>>> = columns.iter().map(|column| column.heights()).collect();
+    // Lines of the table first, then those of its cells, so that two columns may be widened one after the other.
+    let cost = |widths: &[usize]| {
+        let rows = columns.first().map_or(0, |column| column.cells.len() + 1);
+        let of = |row: usize| {
+            let cells = (0..columns.len()).map(|i| heights[i][widths[i] - columns[i].least][row]);
+            cells.clone().max().unwrap_or(0) * 1000 + cells.sum::<usize>()
+        };
+        (0..rows).map(of).sum::<usize>()
+    };
+    let mut widths: Vec<_> = columns.iter().map(|column| column.least).collect();
+    loop {
+        let spare = room.saturating_sub(widths.iter().sum());
+        let now = cost(&widths);
+        let mut best: Option<(usize, Vec<usize>)> = None;
+        for i in 0..columns.len() {
+            for more in 1..=spare.min(natural[i] - widths[i]) {
+                let mut wider = widths.clone();
+                wider[i] += more;
+                let gain = now.saturating_sub(cost(&wider)) / more;
+                if gain > best.as_ref().map_or(0, |(best, _)| *best) {
+                    best = Some((gain, wider));
+                }
+            }
+        }
+        match best {
+            Some((_, wider)) => widths = wider,
+            None => return widths,
+        }
+    }
 }
 
 /// Broken at spaces into lines of at most `width` characters, as far as its pieces allow.
