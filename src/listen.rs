@@ -5,6 +5,7 @@
 
 mod live;
 mod meter;
+mod pace;
 mod stream;
 
 pub use live::listen;

@@ -38,7 +38,7 @@ macro_rules! scalar {
         }
     )*};
 }
-scalar!(u8, i8, u16, i16, u32, i32, u64, i64, f32);
+scalar!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
 
 /// Copies as many bytes as both have.
 pub(crate) fn copy(from: &[u8], to: &mut [u8]) {

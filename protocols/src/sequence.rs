@@ -51,6 +51,11 @@ impl Losses {
         gap
     }
 
+    /// The newest number that came.
+    pub const fn last(&self) -> Option<u8> {
+        self.last
+    }
+
     /// Packets lost so far, those before the first arrival not counted.
     pub const fn lost(&self) -> u64 {
         self.lost

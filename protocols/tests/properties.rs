@@ -1,6 +1,7 @@
 //! What holds for any values and any bytes.
 
 use proptest::collection::vec;
+use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::select;
 use ratetable_protocols::mavlink::{self, Header, Message, Version};
@@ -27,8 +28,7 @@ fn any_packet() -> impl Strategy<Value = Packet> {
 /// Any message, made from any payload without not-a-number.
 #[allow(clippy::eq_op, reason = "not-a-number is what is not equal to itself")]
 fn any_message() -> impl Strategy<Value = Message> {
-    let known: Vec<u32> = (0..300).filter(|&id| mavlink::crc_extra(id).is_some()).collect();
-    (select(known), vec(any::<u8>(), mavlink::MAX_PAYLOAD_LEN))
+    (select(Message::IDS), vec(any::<u8>(), mavlink::MAX_PAYLOAD_LEN))
         .prop_map(|(id, bytes)| Message::parse(id, &bytes).unwrap())
         .prop_filter("not-a-number is not equal to itself", |message| message == message)
 }
@@ -84,8 +84,19 @@ fn any_vectornav() -> impl Strategy<Value = vectornav::Packet> {
 
 fn any_mip() -> impl Strategy<Value = mip::imu::Repr> {
     let vector = any::<Option<[f32; 3]>>;
-    (any::<Option<f32>>(), vector(), vector(), vector())
-        .prop_map(|(pressure, mag, accel, gyro)| mip::imu::Repr { pressure, mag, accel, gyro })
+    (any::<Option<f32>>(), vector(), vector(), vector(), option::of(any_time()))
+        .prop_map(|(pressure, mag, accel, gyro, time)| mip::imu::Repr { pressure, mag, accel, gyro, time })
+}
+
+fn any_time() -> impl Strategy<Value = mip::imu::Time> {
+    use mip::imu::Time;
+    prop_oneof![
+        any::<u64>().prop_map(Time::Reference),
+        any::<(u64, u16)>().prop_map(|(ns, valid)| Time::External(ns, valid)),
+        any::<(f64, u16, u16)>().prop_map(|(s, week, valid)| Time::SharedGps(s, week, valid)),
+        any::<(f64, u16, u16)>().prop_map(|(s, week, valid)| Time::Gps(s, week, valid)),
+        any::<u32>().prop_map(Time::Ticks),
+    ]
 }
 
 /// Bytes among which many look like the start of a packet.

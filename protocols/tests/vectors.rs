@@ -50,6 +50,10 @@ fn golden_mavlink_bytes_are_the_messages() {
             header: mavlink_header(&vector.json),
             id: message.id(),
             message: Some(message),
+            checked: true,
+            stamp_us: None,
+            len: vector.bytes.len(),
+            skipped: 0,
         };
         let mut seen = Vec::new();
         mavlink::Decoder::new().feed(&vector.bytes, |received| seen.push(received));

@@ -90,6 +90,7 @@ pub(super) fn shape(from: &Destination) -> HeardReport {
         rate_hz: Some(0.0),
         received_hz: Some(0.0),
         missing: Some(0),
+        longest_step_s: Some(0.0),
         burst_share: Some(0.0),
         interval_us: Some(Interval::default()),
         sample_interval_us: Some(Interval::default()),
@@ -98,7 +99,7 @@ pub(super) fn shape(from: &Destination) -> HeardReport {
     };
     let more = |kind: SensorKind| (2..=4).map(move |n| format!("{kind}-{n}"));
     let names = SensorKind::ALL.into_iter().flat_map(|kind| [kind.to_string()].into_iter().chain(more(kind)));
-    let link = HeardLink { to: from.to_string(), ..HeardLink::default() };
+    let link = HeardLink { to: from.to_string(), stamp_steps: Some(0), ..HeardLink::default() };
     empty(names.map(sensor).collect(), vec![link])
 }
 

@@ -35,7 +35,7 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
         text += &format!(
             "{} was unplugged {}, {} s in all: {} packets with {} samples dropped\n",
             link.name,
-            if gaps.count == 1 { "once".into() } else { format!("{} times", gaps.count) },
+            times(gaps.count),
             number(gaps.total_s),
             gaps.dropped,
             gaps.samples
@@ -137,6 +137,7 @@ pub fn heard(report: &HeardReport, interrupted: bool) -> String {
     let mut text = format!("\n{span}{ended}\n\n");
     if !report.sensors.is_empty() {
         text += &heard_sensors(report);
+        text += &steps(report);
         text.push('\n');
     }
     for link in &report.links {
@@ -156,8 +157,11 @@ pub fn heard(report: &HeardReport, interrupted: bool) -> String {
             rate(link.utilisation.map(|share| 100.0 * share), " % of the baud rate"),
             link.crc_errors,
             some(link.duplicates, "twice"),
-            some(link.out_of_order, "out of order"),
+            some(link.out_of_order, "out of order") + &some(Some(link.unchecked), "that cannot be checked"),
         );
+        if let Some(steps) = link.stamp_steps.filter(|steps| *steps > 0) {
+            text += &format!("its stamps went back or more than an hour ahead {}: left out\n", times(steps));
+        }
         let others: Vec<_> = link.foreign.iter().map(|(name, count)| format!("{name} {count}")).collect();
         if !others.is_empty() {
             text += &format!("without samples: {}\n", others.join(", "));
@@ -169,15 +173,41 @@ pub fn heard(report: &HeardReport, interrupted: bool) -> String {
     text
 }
 
+/// Where the clocks of the sensors' samples were set, and what was made of it.
+fn steps(report: &HeardReport) -> String {
+    let mut text = String::new();
+    for sensor in report.sensors.iter().filter(|sensor| sensor.steps_back + sensor.steps_forward > 0) {
+        let told = [("did not go on", sensor.steps_back), ("jumped ahead", sensor.steps_forward)];
+        let told = told.into_iter().filter(|(_, count)| *count > 0);
+        let told: Vec<_> = told.map(|(what, count)| format!("{what} {}", times(count))).collect();
+        let longest =
+            sensor.longest_step_s.map_or(String::new(), |s| format!(", by {} s at most", number(s.abs())));
+        text += &format!("{}: its time {}{longest}: left out\n", sensor.name, told.join(" and "));
+    }
+    let assumed = report.duration_s.is_none() && report.links.iter().all(|link| link.lost_seq.is_none());
+    if assumed && report.sensors.iter().any(|sensor| sensor.steps_forward > 0) {
+        text += "jumps of more than 1 s and 100 intervals are taken for the clock's, since nothing here tells them from samples that are missing\n";
+    }
+    text
+}
+
+fn times(count: u64) -> String {
+    if count == 1 { "once".into() } else { format!("{count} times") }
+}
+
 fn heard_sensors(report: &HeardReport) -> String {
     let live = report.sensors.iter().any(|sensor| sensor.received_hz.is_some());
+    let gathered = report.sensors.iter().any(|sensor| sensor.burst_share.is_some());
+    let stepped = report.sensors.iter().any(|sensor| sensor.steps_back + sensor.steps_forward > 0);
     let several = report.sensors.iter().any(|sensor| sensor.source != report.sensors[0].source);
     let mut heading = vec!["sensor"];
     heading.extend(several.then_some("source"));
     heading.extend(["received", "missing", "sampled Hz"]);
+    heading.extend(stepped.then_some("time steps"));
     if live {
-        heading.extend(["received Hz", "interval µs p50", "p99", "max", "jitter µs p99", "bursts"]);
+        heading.extend(["received Hz", "interval µs p50", "p99", "max", "jitter µs p99"]);
     }
+    heading.extend(gathered.then_some("bursts"));
     let optional = |value: Option<f64>| value.map_or("-".into(), number);
     let hz = |rate: Option<f64>| rate.map_or("-".into(), |rate| format!("{rate:.3}"));
     let rows = report.sensors.iter().map(|sensor| {
@@ -185,6 +215,7 @@ fn heard_sensors(report: &HeardReport) -> String {
         let mut row = vec![sensor.name.clone()];
         row.extend(several.then(|| sensor.source.clone()));
         row.extend([sensor.received.to_string(), missing, hz(sensor.rate_hz)]);
+        row.extend(stepped.then(|| (sensor.steps_back + sensor.steps_forward).to_string()));
         if live {
             let interval = sensor.interval_us;
             row.push(hz(sensor.received_hz));
@@ -193,8 +224,10 @@ fn heard_sensors(report: &HeardReport) -> String {
                     .map(optional),
             );
             row.push(optional(sensor.jitter_us.map(|us| us.p99)));
-            row.push(sensor.burst_share.map_or("-".into(), |share| format!("{} %", number(100.0 * share))));
         }
+        let share =
+            |share: Option<f64>| share.map_or("-".into(), |share| format!("{} %", number(100.0 * share)));
+        row.extend(gathered.then(|| share(sensor.burst_share)));
         row
     });
     Stream::Err.table(&heading, &rows.collect::<Vec<_>>())

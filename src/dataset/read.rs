@@ -1,5 +1,14 @@
 //! Reading a dataset back: columns by name, in the program's own axes, every mistake with file, line and column.
 
+mod mat;
+#[cfg(feature = "mcap")]
+mod mcap;
+mod npy;
+mod other;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod tum;
+
 use super::error::DatasetError;
 use super::manifest;
 use crate::geometry::{Attitude, Axes, Body, Vector};
@@ -18,13 +27,19 @@ pub struct Recorded {
     pub attitudes: Vec<(SimTime, Attitude)>,
 }
 
-/// Reads the attitudes of a dataset's folder, or of its `truth.csv` named itself; the axes are those that the
-/// `manifest.json` beside it names.
+/// Reads the attitudes of a dataset's folder in whatever format it has them, or of its `truth.csv` named itself; the
+/// axes are those that the `manifest.json` beside it names.
 ///
 /// # Errors
 /// No such file, no manifest, or a column, number or order of times that cannot be.
 pub fn truth(path: &Path) -> Result<Recorded, DatasetError> {
     let file = if path.is_dir() { path.join("truth.csv") } else { path.to_path_buf() };
+    if path.is_dir()
+        && !file.exists()
+        && let Some(recorded) = other::truth(path)?
+    {
+        return Ok(recorded);
+    }
     let mut columns = Columns::open(&file, ["qw", "qx", "qy", "qz"])?;
     let axes = axes(&file)?;
     let mut attitudes = Vec::new();
@@ -39,13 +54,23 @@ pub fn truth(path: &Path) -> Result<Recorded, DatasetError> {
     Ok(Recorded { axes, attitudes })
 }
 
-/// Reads one sensor's readings of a dataset's folder: time and value in body axes (Forward-Right-Down), in the
+/// Whether a dataset's folder has a sensor's readings, in any format, or should have.
+pub fn has(folder: &Path, kind: SensorKind) -> bool {
+    folder.join(format!("{kind}.csv")).exists() || other::lists(folder, kind)
+}
+
+/// Reads one sensor's readings of a dataset's folder, in whatever format it has them: time and value in body axes (Forward-Right-Down), in the
 /// sensor's unit.
 ///
 /// # Errors
 /// As of [`truth`].
 pub fn readings(folder: &Path, kind: SensorKind) -> Result<Vec<(SimTime, Vector<Body>)>, DatasetError> {
     let file = folder.join(format!("{kind}.csv"));
+    if !file.exists()
+        && let Some(readings) = other::readings(folder, kind)?
+    {
+        return Ok(readings);
+    }
     let names = ["x", "y", "z"].map(|axis| format!("{axis}_{}", kind.column_unit()));
     let mut columns = Columns::open(&file, names.each_ref().map(String::as_str))?;
     let axes = axes(&file)?;

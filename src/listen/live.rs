@@ -29,11 +29,6 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
         let name = link.name().to_string();
         on(Event::Ready(&format!("{}@{name}", job.protocol.name())));
         let live = link.is_live();
-        if !live {
-            on(Event::Notice(
-                "a recording: its bytes have no times of arrival, so rates are by sample times".into(),
-            ));
-        }
         let Some(receiver) = link.receiver() else {
             return Err(ListenError::Mute {
                 link: name,
@@ -42,7 +37,7 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
         };
         // A sender that waits for a word on UDP gets one; every other link is left in silence.
         let greeted = matches!(job.address, Address::UdpOut(_)).then(|| link.sender());
-        let meter = Meter::new(job.protocol);
+        let meter = if live { Meter::new(job.protocol) } else { Meter::recorded(job.protocol) };
         let clock = WallClock::start();
         let ear = Ear { job, name, live, link, receiver, greeted, meter, clock };
         ear.hear(&mut signals, on).await
@@ -120,6 +115,9 @@ impl Ear<'_> {
             }
         }
         self.meter.finish();
+        if !self.live {
+            on(Event::Notice(recording(&self.meter).into()));
+        }
         if self.meter.counts().packets == 0 && !interrupted {
             return Err(self.nothing(None));
         }
@@ -161,6 +159,14 @@ impl Ear<'_> {
 
     fn broke(&self, source: std::io::Error) -> ListenError {
         LinkError::Io { link: self.name.clone(), doing: "read".into(), source }.into()
+    }
+}
+
+/// What the times of a recording are.
+fn recording(meter: &Meter) -> &'static str {
+    match meter.counts().stamps {
+        Some(_) => "a .tlog: the stamps in front of its packets are taken for the times of arrival",
+        None => "a recording: its bytes have no times of arrival, so rates are by sample times",
     }
 }
 

@@ -1,10 +1,11 @@
 //! Bytes and when they arrived in; rates, intervals, losses and damage out. No clock, no I/O.
 
-use super::stream::Stream;
+use super::stream::{Arrival, Stream};
 use crate::report::{HeardLink, HeardSensor};
 use crate::sensor::SensorKind;
 use crate::wire::Protocol;
 use crate::wire::samples::{Counts, Sample, Samples};
+use ratetable_protocols::mavlink::STAMP_LEN;
 use std::fmt;
 
 /// As many sensors as are told apart on one link.
@@ -19,6 +20,7 @@ const ENOUGH: u64 = 3;
 /// Counts and times one stream of bytes.
 pub struct Meter {
     samples: Samples,
+    recorded: bool,
     streams: Vec<Stream>,
     reads: u64,
     first: Option<i64>,
@@ -37,8 +39,18 @@ impl fmt::Debug for Meter {
 impl Meter {
     /// Of a stream of which only the protocol is known.
     pub fn new(protocol: Protocol) -> Meter {
+        Meter::of(Samples::new(protocol), false)
+    }
+
+    /// Of what was recorded before, which may say itself when its packets arrived: a `.tlog`.
+    pub fn recorded(protocol: Protocol) -> Meter {
+        Meter::of(Samples::recorded(protocol), true)
+    }
+
+    fn of(samples: Samples, recorded: bool) -> Meter {
         Meter {
-            samples: Samples::new(protocol),
+            samples,
+            recorded,
             streams: Vec::new(),
             reads: 0,
             first: None,
@@ -81,16 +93,22 @@ impl Meter {
         &self.streams
     }
 
-    /// From the first to the last read, s; `None` for a recording.
+    /// From the first to the last read or stamp, steps of the stamps left out, s; `None` for a recording without stamps.
     pub fn duration_s(&self) -> Option<f64> {
-        Some(self.last?.saturating_sub(self.first?) as f64 * 1e-9)
+        let stamped = self.counts().stamps.map(|stamps| stamps.span_ns);
+        Some(
+            stamped.or(self.last.zip(self.first).map(|(last, first)| last.saturating_sub(first)))? as f64
+                * 1e-9,
+        )
     }
 
     /// The protocol that bytes read as which make no packet of the one asked for.
     pub fn reads_as(&self) -> Option<Protocol> {
         let makes_packets = |protocol: &Protocol| {
-            let mut samples = Samples::new(*protocol);
+            let mut samples =
+                if self.recorded { Samples::recorded(*protocol) } else { Samples::new(*protocol) };
             samples.feed(&self.kept, |_| {});
+            samples.finish(|_| {});
             let counts = samples.counts();
             counts.packets >= ENOUGH && counts.packets > counts.damaged
         };
@@ -106,8 +124,11 @@ impl Meter {
     /// The link's report, `to` as asked for and `name` as opened; `baud` where it has a rate that counts.
     pub fn link(&self, to: String, name: String, baud: Option<u32>) -> HeardLink {
         let counts = self.counts().clone();
-        // The first read brought what had gathered before: the rate is of what came after it.
-        let after = counts.bytes - self.before;
+        // The first read brought what had gathered before: the rate is of what came after it. A stamp was on no link.
+        let after = match counts.stamps {
+            Some(_) => counts.bytes.saturating_sub(STAMP_LEN as u64 * counts.packets),
+            None => counts.bytes - self.before,
+        };
         let bytes_per_s = self.duration_s().filter(|span| *span > 0.0).map(|span| after as f64 / span);
         HeardLink {
             to,
@@ -122,6 +143,8 @@ impl Meter {
             duplicates: counts.numbered.then_some(counts.duplicates),
             out_of_order: counts.numbered.then_some(counts.out_of_order),
             joined_midway: counts.joined_midway,
+            unchecked: counts.unchecked,
+            stamp_steps: counts.stamps.map(|stamps| stamps.steps),
             foreign: counts.foreign,
         }
     }
@@ -140,5 +163,6 @@ fn take(streams: &mut Vec<Stream>, sample: Sample, now: Option<i64>, read: u64) 
         }
         streams.len() - 1
     });
-    streams[place].take(sample.t, now, read);
+    let stamp = sample.packet.arrived.map(|t| t.0);
+    streams[place].take(&sample, Arrival { at: stamp.or(now), stamped: stamp.is_some(), read });
 }

@@ -1,9 +1,18 @@
 //! One sensor of a stream: how many, how evenly, by the sender's times and by ours. Memory is fixed.
 
+use super::pace::{Evidence, Pace};
 use crate::report::{HeardSensor, Times};
 use crate::sensor::SensorKind;
-use crate::time::SimTime;
 use crate::wire::samples::{Sample, Source};
+
+/// A clock of 32 bits wraps after so long: µs and ms, in ns.
+const WRAPS: [i64; 2] = [(1 << 32) * 1000, (1 << 32) * 1_000_000];
+
+/// How far around a wrap two samples may be that follow each other, ns.
+const AROUND: i64 = 10_000_000_000;
+
+/// A gap in the numbers makes no longer gap in the times than this, ns: beyond, the sender was started anew.
+const LONGEST_LOSS: i64 = 60_000_000_000;
 
 /// One sensor of a stream.
 #[derive(Clone, Debug)]
@@ -12,40 +21,39 @@ pub struct Stream {
     kind: SensorKind,
     source: Source,
     count: u64,
-    arrivals: Ends,
-    samples: Ends,
-    timed: u64,
+    /// The newest arrival, ns.
+    arrived: Option<i64>,
+    /// How long arrivals took together, and how many intervals that is.
+    arrivals: (i64, u64),
+    /// The newest sample time, ns, wraps added.
+    sampled: Option<i64>,
+    /// What wraps of the sender's clock have added to its times, ns.
+    wrapped: i64,
+    /// What had been lost at the newest sample.
+    lost: Option<u64>,
     read: u64,
-    together: u64,
+    /// Samples that arrived in the read of the one before; `None` where nothing is known of reads.
+    together: Option<u64>,
     steps_back: u64,
+    longest_back: i64,
     /// The newest sample time before the last one, where that was older.
     overtaken: Option<i64>,
     /// Samples that came after a newer one: no gap hides them.
     filled: u64,
     interval: Times,
-    sample_interval: Times,
+    pace: Pace,
     jitter: Times,
 }
 
-/// The first and the last of a row of times, ns.
-#[derive(Clone, Copy, Debug, Default)]
-struct Ends {
-    first: Option<i64>,
-    last: Option<i64>,
-}
-
-impl Ends {
-    /// Takes the next time in; the step from the one before.
-    fn take(&mut self, t: i64) -> Option<i64> {
-        self.first.get_or_insert(t);
-        self.last.replace(t).map(|before| t.saturating_sub(before))
-    }
-
-    /// `(n − 1)/(last − first)`, Hz.
-    fn rate(&self, count: u64) -> Option<f64> {
-        let span = self.last?.saturating_sub(self.first?);
-        (count > 1 && span > 0).then(|| (count - 1) as f64 * 1e9 / span as f64)
-    }
+/// When a sample arrived, as far as that is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrival {
+    /// ns, by whatever clock; `None` for a recording without stamps.
+    pub at: Option<i64>,
+    /// Whether a recording's stamp says so, by a clock that may be set.
+    pub stamped: bool,
+    /// In which read.
+    pub read: u64,
 }
 
 impl Stream {
@@ -55,16 +63,19 @@ impl Stream {
             kind: sample.kind,
             source: sample.source,
             count: 0,
-            arrivals: Ends::default(),
-            samples: Ends::default(),
-            timed: 0,
+            arrived: None,
+            arrivals: (0, 0),
+            sampled: None,
+            wrapped: 0,
+            lost: None,
             read: 0,
-            together: 0,
+            together: None,
             steps_back: 0,
+            longest_back: 0,
             overtaken: None,
             filled: 0,
             interval: Times::new(),
-            sample_interval: Times::new(),
+            pace: Pace::new(),
             jitter: Times::new(),
         }
     }
@@ -93,54 +104,100 @@ impl Stream {
         self.interval.values()
     }
 
-    /// Takes a sample in that arrived at `now` (ns) in the `read`-th read; `now` is `None` for a recording.
-    pub(super) fn take(&mut self, t: Option<SimTime>, now: Option<i64>, read: u64) {
-        let arrival = now.and_then(|now| self.arrivals.take(now));
-        if let Some(step) = arrival {
-            self.interval.record(step);
-            self.together += u64::from(read == self.read);
-        }
-        self.read = read;
+    /// Takes a sample in.
+    pub(super) fn take(&mut self, sample: &Sample, arrival: Arrival) {
         self.count += 1;
-        let Some(t) = t else { return };
-        self.timed += 1;
-        let newest = self.samples.last;
-        let Some(step) = self.samples.take(t.0) else { return };
-        if step <= 0 {
-            self.steps_back += 1;
-            self.overtaken = newest.filter(|_| step < 0);
-            return;
+        let waited =
+            arrival.at.and_then(|at| self.arrived.replace(at).map(|before| at.saturating_sub(before)));
+        let lossless =
+            sample.packet.lost.map(|lost| self.lost.replace(lost).is_some_and(|before| lost <= before));
+        let step = sample.t.and_then(|t| self.step(t.0));
+        let step = step.and_then(|step| self.go_on(step, waited, lossless));
+        if arrival.at.is_some() && !arrival.stamped {
+            *self.together.get_or_insert(0) += u64::from(waited.is_some() && arrival.read == self.read);
         }
-        // Time goes on from before a step back: that was one sample out of order, and no new beginning.
-        let skipped = self.overtaken.take().filter(|newest| t.0 > *newest);
-        self.filled += u64::from(skipped.is_some());
-        self.sample_interval.record(skipped.map_or(step, |newest| t.0.saturating_sub(newest)));
-        if let Some(arrival) = arrival.filter(|_| skipped.is_none()) {
-            self.jitter.record(arrival.saturating_sub(step).saturating_abs());
+        self.read = arrival.read;
+        let Some(waited) = waited.filter(|waited| !arrival.stamped || self.is_plausible(*waited, step))
+        else {
+            return;
+        };
+        self.interval.record(waited);
+        self.arrivals = (self.arrivals.0.saturating_add(waited), self.arrivals.1 + 1);
+        if let Some(step) = step {
+            self.jitter.record(waited.saturating_sub(step).saturating_abs());
         }
     }
 
-    /// Samples that a gap between two sample times hides: how often the median interval fits into it, less one.
-    fn missing(&self) -> Option<u64> {
-        let median = self.sample_interval.late()?.p50;
-        let hidden = |(gap, count): (f64, u64)| ((gap / median).round() as u64).saturating_sub(1) * count;
-        let hidden: u64 = self.sample_interval.values().into_iter().map(hidden).sum();
-        Some(hidden.saturating_sub(self.filled))
+    /// How far the sample time is from that of the sample before it, by a clock that goes on counting where its 32 bits
+    /// wrap.
+    fn step(&mut self, said: i64) -> Option<i64> {
+        let mut t = said.saturating_add(self.wrapped);
+        if let Some(before) = self.sampled {
+            let step = t.saturating_sub(before);
+            let wrapped = |wrap: &i64| said <= AROUND && (1..=AROUND).contains(&step.saturating_add(*wrap));
+            let from_before = |wrap: &i64| {
+                self.wrapped >= *wrap && (-AROUND..=AROUND).contains(&step.saturating_sub(*wrap))
+            };
+            if let Some(wrap) = WRAPS.into_iter().find(wrapped) {
+                self.wrapped += wrap;
+                t += wrap;
+            } else if let Some(wrap) = WRAPS.into_iter().find(from_before) {
+                t -= wrap;
+            }
+        }
+        self.sampled.replace(t).map(|before| t.saturating_sub(before))
+    }
+
+    /// Takes in a step of the sample time. `waited`: how long between the arrivals; `lossless`: whether nothing was
+    /// lost by the numbers; each where it is known. Hands the step back where it is the time between two samples.
+    fn go_on(&mut self, step: i64, waited: Option<i64>, lossless: Option<bool>) -> Option<i64> {
+        let t = self.sampled?;
+        if step <= 0 {
+            self.steps_back += 1;
+            self.longest_back = self.longest_back.min(step);
+            self.overtaken = (step < 0).then(|| t.saturating_sub(step));
+            return None;
+        }
+        // Time goes on from before a step back: that was one sample out of order, and no new beginning.
+        let skipped = self.overtaken.take().map(|newest| t.saturating_sub(newest)).filter(|ahead| *ahead > 0);
+        self.filled += u64::from(skipped.is_some());
+        let may_lose = lossless == Some(false) && step <= LONGEST_LOSS;
+        let went_by = waited.is_some_and(|waited| waited >= step / 2);
+        let may_jump = !may_lose && !went_by;
+        let evidence = Evidence { may_jump, lossless: lossless == Some(true) };
+        self.pace.take(skipped.unwrap_or(step), evidence);
+        let follows = skipped.is_none() && !(may_jump && self.pace.is_long(step));
+        follows.then_some(step)
+    }
+
+    /// Whether a recording's stamps went on as time does: not back, and not far ahead where the sender's clock did not.
+    fn is_plausible(&self, waited: i64, step: Option<i64>) -> bool {
+        waited >= 0 && !(self.pace.is_long(waited) && step.is_some_and(|step| step < waited / 2))
+    }
+
+    /// The clock's longest step, s: forward, or back as a negative number.
+    fn longest_step(&self, forward: i64) -> Option<f64> {
+        let longest = if forward > -self.longest_back { forward } else { self.longest_back };
+        (longest != 0).then_some(longest as f64 * 1e-9)
     }
 
     pub(super) fn report(&self) -> HeardSensor {
-        let live = self.arrivals.first.is_some();
+        let pace = self.pace.settled();
+        let (waited, intervals) = self.arrivals;
+        let (steps_forward, longest) = pace.jumps();
         HeardSensor {
             name: self.name.clone(),
             source: self.source.to_string(),
             received: self.count,
-            rate_hz: self.samples.rate(self.timed),
-            received_hz: self.arrivals.rate(self.count),
-            missing: self.missing(),
+            rate_hz: pace.rate(),
+            received_hz: (waited > 0).then(|| intervals as f64 * 1e9 / waited as f64),
+            missing: pace.missing().map(|missing| missing.saturating_sub(self.filled)),
             steps_back: self.steps_back,
-            burst_share: live.then(|| self.together as f64 / (self.count - 1).max(1) as f64),
+            steps_forward,
+            longest_step_s: self.longest_step(longest),
+            burst_share: self.together.map(|together| together as f64 / (self.count - 1).max(1) as f64),
             interval_us: self.interval.interval(),
-            sample_interval_us: self.sample_interval.interval(),
+            sample_interval_us: pace.steps().interval(),
             jitter_us: self.jitter.late(),
         }
     }

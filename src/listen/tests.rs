@@ -91,6 +91,82 @@ fn time_that_does_not_go_on_is_counted() {
 }
 
 #[test]
+fn a_clock_that_is_set_changes_neither_rate_nor_loss_and_is_told() {
+    // (what the sender's clock adds from the 300th sample on, steps back, steps forward)
+    for (set, back, forward) in [(0, 0, 0), (-295, 1, 0), (-30, 1, 0), (5_000, 0, 1), (3_600_000, 0, 1)] {
+        for live in [true, false] {
+            let mut meter = if live { Meter::new(Protocol::Mpu) } else { Meter::recorded(Protocol::Mpu) };
+            for k in 0..600i64 {
+                let mut bytes = [0; mpu::MAX_LEN];
+                let t_us = (k + if k < 300 { 0 } else { set }) * 1000;
+                let gyro = Packet::Gyro(gyro::Repr { gyro: [1, 2, 3] });
+                let len = mpu::encode(k as u8, t_us as u32, &gyro, &mut bytes).unwrap();
+                meter.arrived(&bytes[..len], live.then_some(k * MS));
+            }
+            let sensor = only(&meter);
+            assert_eq!((sensor.rate_hz, sensor.missing), (Some(1000.0), Some(0)), "{set} ms, live {live}");
+            assert_eq!((sensor.steps_back, sensor.steps_forward), (back, forward), "{set} ms, live {live}");
+            let longest = sensor.longest_step_s.map(|s| (s * 1000.0).round() as i64);
+            assert_eq!(longest, (set != 0).then_some(set + 1), "{set} ms");
+        }
+    }
+}
+
+#[test]
+fn silence_of_many_seconds_is_a_loss_where_the_arrivals_or_the_numbers_have_it() {
+    // Five seconds of nothing, live; the number goes on as it must.
+    let meter = heard((0..300).chain(5300..5600), |k| k * MS);
+    assert_eq!((only(&meter).missing, only(&meter).steps_forward), (Some(5000), 0));
+    // The same in a recording, by the numbers.
+    let mut meter = Meter::recorded(Protocol::Mpu);
+    (0..300).chain(5300..5600).for_each(|k| meter.arrived(&packet(k), None));
+    assert_eq!((only(&meter).missing, only(&meter).steps_forward), (Some(5000), 0));
+    // Text has no numbers: a recording of it leaves the jump open, and it is told as one of the clock.
+    let line = |k: i64| format!("{},gyro,0,0,0\n", k * MS);
+    let mut meter = Meter::recorded(Protocol::Csv);
+    (0..300).chain(5300..5600).for_each(|k| meter.arrived(line(k).as_bytes(), None));
+    let sensor = only(&meter);
+    assert_eq!((sensor.missing, sensor.steps_forward, sensor.rate_hz), (Some(0), 1, Some(1000.0)));
+    // What is short enough to be loss is loss.
+    let mut meter = Meter::recorded(Protocol::Csv);
+    (0..300).chain(1200..1600).for_each(|k| meter.arrived(line(k).as_bytes(), None));
+    assert_eq!((only(&meter).missing, only(&meter).steps_forward), (Some(900), 0));
+}
+
+#[test]
+fn a_clock_of_32_bits_that_wraps_does_not_step() {
+    for wrap in [(1i64 << 32) * 1000, (1 << 32) * MS] {
+        let mut meter = Meter::recorded(Protocol::Csv);
+        for k in 0..4000 {
+            let k = if k == 2001 { 1998 } else { k };
+            let t = (wrap - 2000 * MS + k * MS) % wrap;
+            meter.arrived(format!("{t},gyro,0,0,0\n").as_bytes(), None);
+        }
+        let sensor = only(&meter);
+        assert_eq!((sensor.rate_hz, sensor.missing), (Some(1000.0), Some(0)));
+        assert_eq!(
+            (sensor.steps_back, sensor.steps_forward),
+            (1, 0),
+            "the one that was overtaken around the wrap"
+        );
+    }
+    let mut meter = Meter::recorded(Protocol::Csv);
+    for k in 0..400 {
+        let t = if k < 200 { 4_000_000 * MS } else { 0 } + k * MS;
+        meter.arrived(format!("{t},gyro,0,0,0\n").as_bytes(), None);
+    }
+    assert_eq!(only(&meter).steps_back, 1, "control: from elsewhere it is a step");
+}
+
+#[test]
+fn five_in_a_hundred_lost_do_not_make_a_sensor_slower() {
+    let meter = heard((0..10_000).filter(|k| k % 20 != 7), |k| k * MS);
+    let sensor = only(&meter);
+    assert_eq!((sensor.rate_hz, sensor.missing, meter.counts().lost), (Some(1000.0), Some(500), 500));
+    assert!(close(sensor.received_hz.unwrap(), 950.0), "what arrives is less: {:?}", sensor.received_hz);
+}
+
+#[test]
 fn who_is_overtaken_is_out_of_order_and_neither_lost_nor_missing() {
     let meter = heard([0, 1, 2, 3, 5, 4, 6, 7, 9, 8].into_iter().chain(10..100), |k| k * MS);
     let (counts, sensor) = (meter.counts(), only(&meter));

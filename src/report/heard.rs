@@ -13,7 +13,7 @@ pub struct HeardReport {
     pub ok: bool,
     /// What did not hold: `links.0.lost_seq = 3 > 0`.
     pub failed: Vec<String>,
-    /// From the first bytes to the last, s; absent where they were recorded before.
+    /// From the first bytes to the last, s, or from the first stamp of a `.tlog` to its last; absent for other recordings.
     pub duration_s: Option<f64>,
     /// What it ran on.
     pub host: Host,
@@ -32,14 +32,20 @@ pub struct HeardSensor {
     pub source: String,
     /// Samples received.
     pub received: u64,
-    /// By the sender's own sample times: (n − 1)/(t_last − t_first), Hz.
+    /// How often the sender samples, by its own sample times: intervals a second, those hidden in gaps counted, Hz. What
+    /// is lost changes nothing; steps of the clock are left out.
     pub rate_hz: Option<f64>,
-    /// By their arrival: (n − 1)/(t_last − t_first), Hz.
+    /// How many samples arrive a second: (n − 1)/(t_last − t_first), Hz, steps of a recording's stamps left out.
     pub received_hz: Option<f64>,
-    /// Samples that are missing by their times, a gap counting as many as the median interval fits into it.
+    /// Samples that are missing by their times: intervals, as long as the stream's own are, that passed without one.
     pub missing: Option<u64>,
     /// How often a sample's time was not after that of the one before.
     pub steps_back: u64,
+    /// How often a sample's time was so far after that of the one before that the clock was set: more than 1 s and 100
+    /// intervals, and neither as long between the arrivals nor, up to a minute, a packet missing by the numbers.
+    pub steps_forward: u64,
+    /// The longest of those steps, s, negative if back.
+    pub longest_step_s: Option<f64>,
     /// The share of samples that arrived in the same read as the one before.
     pub burst_share: Option<f64>,
     /// Between two arrivals, µs.
@@ -66,7 +72,7 @@ pub struct HeardLink {
     pub bytes_per_s: Option<f64>,
     /// The same against what the baud rate carries (8N1), where there is one.
     pub utilisation: Option<f64>,
-    /// Stretches of bytes that are no packet or fail its checksum.
+    /// Packets that fail their checksum or are cut short; a stretch of other bytes counts as one.
     pub crc_errors: u64,
     /// Packets missing by their sequence numbers, modulo 256, damaged ones included; absent in protocols without.
     pub lost_seq: Option<u64>,
@@ -76,6 +82,11 @@ pub struct HeardLink {
     pub out_of_order: Option<u64>,
     /// 1 if the first bytes were the rest of a packet, which is no damage.
     pub joined_midway: u64,
+    /// Packets of MAVLink messages beyond the dialects `common` and `ardupilotmega`, whose checksum and so whose number
+    /// cannot be checked: they show no gap, but fill one.
+    pub unchecked: u64,
+    /// How often the stamps of a `.tlog` went back, or on by more than an hour; absent elsewhere.
+    pub stamp_steps: Option<u64>,
     /// Packets without a sample, by name.
     pub foreign: BTreeMap<String, u64>,
 }

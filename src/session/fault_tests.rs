@@ -124,11 +124,7 @@ fn a_receiver_counts_exactly_what_was_injected() {
             let of = |injected: &str| if kind == injected { acted } else { 0 };
             assert_eq!(counts.lost, of("drop") + of("corrupt"), "{name} {kind}");
             assert_eq!((counts.duplicates, counts.out_of_order), (of("duplicate"), of("reorder")), "{kind}");
-            // Two hurt ones side by side are one stretch of bytes that MAVLink cannot read.
-            match name {
-                "mpu" => assert_eq!(counts.damaged, of("corrupt"), "{kind}"),
-                _ => assert!(counts.damaged <= of("corrupt") && (counts.damaged > 0) == (kind == "corrupt")),
-            }
+            assert_eq!(counts.damaged, of("corrupt"), "{name} {kind}");
             assert_eq!(ran.sent, clean.sent - of("drop") + of("duplicate"), "{name} {kind}");
             assert_eq!(counts.packets + of("corrupt"), ran.sent, "{name} {kind}");
             // Samples come as often as the account says, but for those in hurt packets.

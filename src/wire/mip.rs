@@ -64,6 +64,7 @@ fn write(newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
         mag: field(SensorKind::Mag, MICROTESLA_A_GAUSS),
         accel: field(SensorKind::Accel, STANDARD_GRAVITY),
         gyro: field(SensorKind::Gyro, 1.0),
+        time: None,
     };
     // MAX_LEN holds every packet.
     mip::encode(&imu, buffer).unwrap_or(0)

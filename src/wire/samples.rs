@@ -3,12 +3,16 @@
 //! Each protocol is one file that hands on every [`Sample`] and counts what came besides ([`Counts`]). Nothing
 //! panics on any bytes, memory stays bounded, and damage costs at most itself.
 
+mod damage;
+mod log;
 mod mavlink;
 mod mip;
 mod mpu;
 mod msp;
 mod text;
 mod vectornav;
+
+pub use log::Stamps;
 
 use super::Protocol;
 use crate::geometry::{Axes, Body, Vector};
@@ -25,13 +29,24 @@ pub struct Sample {
     pub kind: SensorKind,
     /// Which of several sensors of that kind on the link.
     pub source: Source,
-    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text, `vectornav`: ns; some
-    /// MAVLink messages: ms). A clock that wraps goes on counting here.
+    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text, `vectornav`, `mip`: ns; some
+    /// MAVLink messages: ms). The 32 bits of `mpu` and `mip` go on counting here where they wrap.
     pub t: Option<SimTime>,
     /// The reading in body axes, rad/s, m/s² or µT; `None` where the packet does not say what its counts mean
     /// (`mpu` before its first config packet, raw messages, the field in `msp`) or that they mean nothing (an
     /// overflow).
     pub value: Option<Vector<Body>>,
+    /// What else is known of its packet.
+    pub packet: Carrier,
+}
+
+/// What is known of the packet that brings a sample, beside what it says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Carrier {
+    /// When it arrived, since 1970, where a recording says so.
+    pub arrived: Option<SimTime>,
+    /// How many packets of its sender were lost up to here, where they have numbers.
+    pub lost: Option<u64>,
 }
 
 /// Who among several sensors of a kind a sample is from.
@@ -95,7 +110,8 @@ pub struct Counts {
     pub bytes: u64,
     /// Whole packets of the protocol, sensors' or not; a line of text is a packet, the line of names too.
     pub packets: u64,
-    /// Stretches of bytes that are no packet or fail its checksum. One stretch may hide several packets.
+    /// Packets that fail their checksum or are cut short, and stretches of other bytes. Where several in a row cannot be
+    /// told apart, MAVLink's numbers say how many they were; without numbers such a stretch counts as one.
     pub damaged: u64,
     /// 1 if the stream began in the middle of a packet, which is no damage.
     pub joined_midway: u64,
@@ -108,6 +124,11 @@ pub struct Counts {
     pub out_of_order: u64,
     /// Whether packets have a sequence number at all.
     pub numbered: bool,
+    /// Packets whose checksum cannot be checked, because their id is beyond the dialects `common` and `ardupilotmega`:
+    /// they show no gap, but fill one.
+    pub unchecked: u64,
+    /// The stamps of a recording that has one in front of each packet.
+    pub stamps: Option<Stamps>,
     /// Packets that carry no sample, by name.
     pub foreign: BTreeMap<String, u64>,
 }
@@ -116,6 +137,7 @@ impl Counts {
     /// As many names of foreign packets as are kept apart.
     const NAMES: usize = 64;
 
+    /// Counts what is no packet: damage, unless the stream was joined there.
     fn refuse(&mut self) {
         let first = self.packets == 0 && self.damaged == 0 && self.joined_midway == 0;
         *if first { &mut self.joined_midway } else { &mut self.damaged } += 1;
@@ -161,6 +183,15 @@ impl Samples {
         Samples::assuming(protocol, &Assumed::default())
     }
 
+    /// For what was recorded before: the same, and a recording of MAVLink may be a ground station's log (`.tlog`), with a
+    /// stamp in front of each packet, which its content tells.
+    pub fn recorded(protocol: Protocol) -> Samples {
+        match protocol {
+            Protocol::Mavlink => Samples::of(Reader::Mavlink(Box::new(mavlink::Reader::recorded()))),
+            _ => Samples::new(protocol),
+        }
+    }
+
     /// For a stream whose axes are known.
     pub fn assuming(protocol: Protocol, assumed: &Assumed) -> Samples {
         let reader = match protocol {
@@ -172,6 +203,10 @@ impl Samples {
             Protocol::Csv => Reader::Text(text::Reader::csv(assumed.axes)),
             Protocol::Jsonl => Reader::Text(text::Reader::jsonl(assumed.axes)),
         };
+        Samples::of(reader)
+    }
+
+    fn of(reader: Reader) -> Samples {
         let numbered = matches!(reader, Reader::Mpu(_) | Reader::Mavlink(_));
         Samples { counts: Counts { numbered, ..Counts::default() }, reader }
     }

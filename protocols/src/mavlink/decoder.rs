@@ -1,11 +1,13 @@
 //! Packets out of a stream of bytes, however it is cut up.
 
-use super::{CRC_LEN, Header, MAX_LEN, Message, Received, SIGNATURE_LEN, Version, checksum, crc_extra};
+use super::{
+    CRC_LEN, Header, MAX_LEN, Message, Received, SIGNATURE_LEN, STAMP_LEN, Version, checksum, known,
+};
 use crate::bytes;
 use crate::error::Error;
 
-/// The longest packet and the byte after it.
-const HELD_LEN: usize = MAX_LEN + 1;
+/// The longest packet and the byte after it, each with its stamp.
+const HELD_LEN: usize = 2 * STAMP_LEN + MAX_LEN + 1;
 
 /// `incompatible` bit: a signature follows the checksum.
 const SIGNED: u8 = 0x01;
@@ -13,13 +15,16 @@ const SIGNED: u8 = 0x01;
 /// Finds packets in a stream; holds what has come of the next one.
 ///
 /// After damage it looks on from the byte behind the false start, so that a damaged length hides
-/// no packet. Messages that are not known here cannot be checked: they are believed only where a
-/// packet is due and another follows, so each is reported when the byte after it comes.
+/// no packet. Messages beyond the table [`KNOWN`](super::KNOWN) cannot be checked: they are believed
+/// only where a packet is due and another follows, so each is reported when the byte after it comes.
 #[derive(Debug, Clone)]
 pub struct Decoder {
     held: [u8; HELD_LEN],
     len: usize,
     in_step: bool,
+    /// Bytes in front of each packet.
+    stamp: usize,
+    skipped: usize,
 }
 
 /// What the held bytes are.
@@ -49,7 +54,13 @@ impl Default for Decoder {
 impl Decoder {
     /// A decoder that holds nothing.
     pub const fn new() -> Self {
-        Self { held: [0; HELD_LEN], len: 0, in_step: true }
+        Self { held: [0; HELD_LEN], len: 0, in_step: true, stamp: 0, skipped: 0 }
+    }
+
+    /// A decoder of a ground station's log (`.tlog`): in front of each packet stand eight bytes, big-endian, the µs
+    /// since 1970 at which it was logged.
+    pub const fn stamped() -> Self {
+        Self { stamp: STAMP_LEN, ..Self::new() }
     }
 
     /// Takes more of the stream and calls `on` with each packet that it completes.
@@ -92,10 +103,13 @@ impl Decoder {
                     self.in_step = false;
                     self.drop_false_start();
                 }
-                Verdict::Packet(received, len) => {
-                    on(Ok((received, &self.held[..len])));
+                Verdict::Packet(mut received, len) => {
+                    let end = self.stamp + len;
+                    received.skipped = core::mem::take(&mut self.skipped);
+                    received.stamp_us = self.stamp_us();
+                    on(Ok((received, &self.held[self.stamp..end])));
                     self.in_step = true;
-                    self.drop_front(len);
+                    self.drop_front(end);
                 }
             }
         }
@@ -103,31 +117,41 @@ impl Decoder {
 
     /// Says what the first held byte starts.
     fn judge(&self, at_end: bool) -> Verdict {
-        let held = &self.held[..self.len];
         let short = if at_end { Verdict::Not(Error::Malformed) } else { Verdict::Wait };
+        let Some(held) = self.held[..self.len].get(self.stamp..).filter(|held| !held.is_empty()) else {
+            return short;
+        };
         let start = match start(held) {
             Ok(Some(start)) => start,
             Ok(None) => return short,
             Err(error) => return Verdict::Not(error),
         };
-        let extra = crc_extra(start.id);
-        if extra.is_none() && !self.in_step {
+        let known = known(start.id);
+        if known.is_none() && !self.in_step {
             return Verdict::Not(Error::Malformed);
         }
         let Some(packet) = held.get(..start.end) else {
             return short;
         };
-        match extra {
-            Some(extra) => checked(&start, packet, extra),
-            None => unchecked(&start, held.get(start.end), at_end),
+        match known {
+            Some(known) => checked(&start, packet, known.crc_extra),
+            None => unchecked(&start, held.get(start.end + self.stamp), at_end),
         }
     }
 
-    /// Drops the first byte and all up to the next that may start a packet.
+    /// Drops the first byte and all up to the next that may start a packet, or its stamp.
     fn drop_false_start(&mut self) {
-        let rest = &self.held[1..self.len];
+        let rest = self.held[..self.len].get(self.stamp + 1..).unwrap_or_default();
         let skip = rest.iter().position(|&byte| Version::from_magic(byte).is_some());
-        self.drop_front(skip.map_or(self.len, |skip| skip + 1));
+        // Of a stamp that has not ended the bytes are kept.
+        let skip = skip.map_or(self.len.saturating_sub(self.stamp).max(1), |skip| skip + 1);
+        self.skipped += skip;
+        self.drop_front(skip);
+    }
+
+    /// The stamp in front of the first packet.
+    fn stamp_us(&self) -> Option<u64> {
+        (self.stamp > 0).then(|| bytes::be(&self.held, 0..STAMP_LEN))
     }
 
     /// Drops bytes from the front.
@@ -170,10 +194,9 @@ fn checked(start: &Start, packet: &[u8], extra: u8) -> Verdict {
         return Verdict::Not(Error::Checksum);
     }
     let payload = &packet[start.header.version.header_len()..start.crc_at];
-    match Message::parse(start.id, payload) {
-        Ok(message) => Verdict::Packet(start.received(Some(message)), start.end),
-        Err(error) => Verdict::Not(error),
-    }
+    // Others of the table are whole, and of no concern here.
+    let message = Message::parse(start.id, payload).ok();
+    Verdict::Packet(Received { checked: true, ..start.received(message) }, start.end)
 }
 
 /// A packet that is believed because of what follows it.
@@ -188,7 +211,15 @@ fn unchecked(start: &Start, following: Option<&u8>, at_end: bool) -> Verdict {
 impl Start {
     /// The whole packet, given its message.
     const fn received(&self, message: Option<Message>) -> Received {
-        Received { header: self.header, id: self.id, message }
+        Received {
+            header: self.header,
+            id: self.id,
+            message,
+            checked: false,
+            stamp_us: None,
+            len: self.end,
+            skipped: 0,
+        }
     }
 }
 
@@ -278,6 +309,83 @@ mod tests {
             decoder.finish_whole(&mut on);
             assert_eq!(count, expected.len());
         }
+    }
+
+    /// A packet of so many bytes behind its stamp.
+    fn stamped(us: u64, packet: &[u8], out: &mut [u8]) -> usize {
+        out[..STAMP_LEN].copy_from_slice(&us.to_be_bytes());
+        out[STAMP_LEN..STAMP_LEN + packet.len()].copy_from_slice(packet);
+        STAMP_LEN + packet.len()
+    }
+
+    #[test]
+    fn in_a_log_each_packet_has_its_stamp_and_a_flipped_bit_costs_one() {
+        let mut bytes = [0; 2 * MAX_LEN];
+        let (first, end) = two_packets(Version::V2, &mut bytes);
+        let mut log = [0; 4 * MAX_LEN];
+        let mut len = stamped(1_700_000_000_000_001, &bytes[..first], &mut log);
+        len += stamped(1_700_000_000_000_002, &UNKNOWN, &mut log[len..]);
+        len += stamped(1_700_000_000_000_003, &bytes[first..end], &mut log[len..]);
+        let read = |log: &[u8]| {
+            let mut seen = [None; 8];
+            let (mut count, mut bad, mut skipped) = (0, 0, 0);
+            let mut on = |received: Result<Received, Error>| match received {
+                Ok(received) => {
+                    seen[count] = received.stamp_us;
+                    count += 1;
+                    skipped += received.skipped;
+                }
+                Err(_) => bad += 1,
+            };
+            let mut decoder = Decoder::stamped();
+            log.chunks(3).for_each(|piece| decoder.feed(piece, &mut on));
+            decoder.finish(&mut on);
+            (seen.map(|stamp| stamp.map(|us| us % 10)), count, bad, skipped)
+        };
+        assert_eq!(read(&log[..len]).0[..4], [Some(1), Some(2), Some(3), None]);
+        assert_eq!((read(&log[..len]).2, read(&log[..len]).3), (0, 0));
+        for bit in STAMP_LEN * 8..(STAMP_LEN + first) * 8 {
+            let mut hurt = log;
+            hurt[bit / 8] ^= 1 << (bit % 8);
+            // The one that cannot be checked is not believed behind damage, unless its id makes the first one unknown.
+            let (seen, count, bad, _) = read(&hurt[..len]);
+            assert_eq!(seen[count - 1], Some(3), "bit {bit}");
+            assert!(bad == 1 || (count == 3 && (7..10).contains(&(bit / 8 - STAMP_LEN))), "bit {bit}");
+        }
+        // From the middle of a packet on, and up to the middle of one.
+        let (seen, count, bad, skipped) = read(&log[STAMP_LEN + 5..len]);
+        assert_eq!((seen[0], count, bad), (Some(3), 1, 1));
+        assert_eq!(skipped, first - 5 + STAMP_LEN + UNKNOWN.len());
+        assert_eq!(read(&log[..len - 3]).0[..3], [Some(1), Some(2), None]);
+    }
+
+    #[test]
+    fn a_message_of_the_table_is_checked_though_it_is_not_read() {
+        // VFR_HUD, whose fields are of no concern here.
+        let mut packet = [0xfd, 4, 0, 0, 3, 1, 1, 74, 0, 0, 1, 2, 3, 4, 0, 0];
+        let crc = checksum(&packet[1..14], known(74).unwrap().crc_extra);
+        packet[14..].copy_from_slice(&crc.to_le_bytes());
+        let read = |bytes: &[u8]| {
+            let mut all = [None; 2];
+            let mut count = 0;
+            let mut decoder = Decoder::new();
+            let mut on = |received: Result<Received, Error>| {
+                all[count] = Some(received);
+                count += 1;
+            };
+            decoder.feed(bytes, &mut on);
+            decoder.finish(&mut on);
+            all
+        };
+        let seen = read(&packet)[0].unwrap().unwrap();
+        assert_eq!((seen.id, seen.message, seen.checked, seen.len), (74, None, true, packet.len()));
+        packet[4] ^= 0x40;
+        assert_eq!(read(&packet)[0], Some(Err(Error::Checksum)), "in its number");
+        let unknown = read(&UNKNOWN)[0].unwrap().unwrap();
+        assert!(
+            !unknown.checked && unknown.message.is_none(),
+            "control: beyond the table nothing is checked"
+        );
     }
 
     #[test]

@@ -32,6 +32,7 @@ pub mod attitude_quaternion;
 pub mod command_ack;
 pub mod command_long;
 mod decoder;
+mod dialect;
 pub mod heartbeat;
 pub mod highres_imu;
 pub mod hil_actuator_controls;
@@ -49,6 +50,7 @@ pub mod system_time;
 pub mod timesync;
 
 pub use decoder::Decoder;
+pub use dialect::{KNOWN, Known, known};
 pub use param_id::{PARAM_ID_LEN, param_id, param_name};
 
 static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_MCRF4XX);
@@ -64,6 +66,9 @@ const CRC_LEN: usize = 2;
 
 /// Bytes of signature behind the checksum, where there is one.
 const SIGNATURE_LEN: usize = 13;
+
+/// Bytes of the stamp in front of each packet of a log.
+pub const STAMP_LEN: usize = 8;
 
 /// The version of the framing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -122,8 +127,17 @@ pub struct Received {
     pub header: Header,
     /// The message id.
     pub id: u32,
-    /// The message; `None` if its id is not known here, and then its checksum is unchecked.
+    /// The message; `None` if it is not one of those that are read here.
     pub message: Option<Message>,
+    /// Whether its checksum was checked, which takes an id of the table [`KNOWN`]: of another not even the number is
+    /// sure.
+    pub checked: bool,
+    /// The stamp in front of it in a log of [`Decoder::stamped`], µs; no checksum covers it.
+    pub stamp_us: Option<u64>,
+    /// Bytes of the packet.
+    pub len: usize,
+    /// Bytes since the packet before that belong to none.
+    pub skipped: usize,
 }
 
 macro_rules! messages {
@@ -135,6 +149,9 @@ macro_rules! messages {
         }
 
         impl Message {
+            /// The ids of all of them.
+            pub const IDS: &[u32] = &[$($module::ID),*];
+
             /// The message id.
             pub const fn id(&self) -> u32 {
                 match self { $(Self::$name(_) => $module::ID,)* }
@@ -143,6 +160,11 @@ macro_rules! messages {
             /// The message's name in MAVLink's definitions, in lower case.
             pub const fn name(&self) -> &'static str {
                 match self { $(Self::$name(_) => stringify!($module),)* }
+            }
+
+            /// The checksum's last byte.
+            pub const fn crc_extra(&self) -> u8 {
+                match self { $(Self::$name(_) => $module::CRC_EXTRA,)* }
             }
 
             /// Bytes of payload before trailing zeros are cut.
@@ -178,14 +200,6 @@ macro_rules! messages {
                     })*
                 }
                 Ok(())
-            }
-        }
-
-        /// The checksum's last byte for a message id, where the id is known here.
-        pub const fn crc_extra(id: u32) -> Option<u8> {
-            match id {
-                $($module::ID => Some($module::CRC_EXTRA),)*
-                _ => None,
             }
         }
     };
@@ -256,8 +270,7 @@ pub fn encode(header: &Header, message: &Message, out: &mut [u8]) -> Result<usiz
     let packet = out.get_mut(..needed).ok_or(Error::BufferTooSmall { needed })?;
     put_header(header, message.id(), payload.len() as u8, packet)?;
     packet[header.version.header_len()..crc_at].copy_from_slice(payload);
-    let extra = crc_extra(message.id()).unwrap_or_default();
-    let crc = checksum(&packet[1..crc_at], extra);
+    let crc = checksum(&packet[1..crc_at], message.crc_extra());
     bytes::put_le(packet, crc_at..needed, crc);
     Ok(needed)
 }

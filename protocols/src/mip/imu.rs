@@ -1,6 +1,7 @@
 //! Descriptor 80: what the inertial sensors read, in as many fields as there are sensors.
 //!
-//! Axes are forward, right, down. Fields that are not known here are stepped over.
+//! Axes are forward, right, down. Fields that are not known here are stepped over. Of several that tell the time the
+//! one is read that a unit's clock steps least in: its own nanoseconds, then those of an outer clock, then its ticks.
 
 use core::ops::Range;
 
@@ -11,13 +12,22 @@ use crate::error::Error;
 pub const DESCRIPTOR: u8 = 0x80;
 
 /// Bytes of all fields together.
-pub const MAX_LEN: usize = 6 + 3 * 14;
+pub const MAX_LEN: usize = 6 + 3 * 14 + 14;
+
+/// Ticks a second of [`Time::Ticks`].
+pub const TICKS_PER_S: u64 = 62_500;
 
 mod descriptor {
     pub(super) const ACCEL: u8 = 0x04;
     pub(super) const GYRO: u8 = 0x05;
     pub(super) const MAG: u8 = 0x06;
     pub(super) const PRESSURE: u8 = 0x17;
+    pub(super) const TICKS: u8 = 0x0e;
+    pub(super) const GPS: u8 = 0x12;
+    // Of every set of fields.
+    pub(super) const SHARED_GPS: u8 = 0xd3;
+    pub(super) const REFERENCE: u8 = 0xd5;
+    pub(super) const EXTERNAL: u8 = 0xd7;
 }
 
 mod field {
@@ -27,6 +37,79 @@ mod field {
     pub(super) const DESCRIPTOR: usize = 1;
     pub(super) const SCALAR: Range<usize> = 2..6;
     pub(super) const VECTOR: Range<usize> = 2..14;
+    pub(super) const TICKS: Range<usize> = 2..6;
+    pub(super) const NS: Range<usize> = 2..10;
+    pub(super) const NS_VALID: Range<usize> = 10..12;
+    pub(super) const TIME_OF_WEEK: Range<usize> = 2..10;
+    pub(super) const WEEK: Range<usize> = 10..12;
+    pub(super) const GPS_VALID: Range<usize> = 12..14;
+}
+
+/// When a packet's data were sampled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Time {
+    /// By the unit's own clock, which never steps, since it was started, ns.
+    Reference(u64),
+    /// By an outer clock, ns, and whether that is one (bit 0).
+    External(u64, u16),
+    /// Of GPS, or by the unit's own clock before it knows that one: seconds of the week, the week since 1980, and what
+    /// of it is sure, in every set of fields.
+    SharedGps(f64, u16, u16),
+    /// The same in the field of the inertial set.
+    Gps(f64, u16, u16),
+    /// Of the unit's timer, [`TICKS_PER_S`] a second, wrapping.
+    Ticks(u32),
+}
+
+impl Time {
+    /// Since the clock's own beginning, ns; `None` for seconds of the week that are none.
+    pub fn ns(&self) -> Option<u64> {
+        const WEEK_NS: u64 = 7 * 86_400 * 1_000_000_000;
+        match *self {
+            Self::Reference(ns) | Self::External(ns, _) => Some(ns),
+            Self::Gps(of_week, week, _) | Self::SharedGps(of_week, week, _) => (0.0..1e6)
+                .contains(&of_week)
+                .then(|| u64::from(week) * WEEK_NS + (of_week * 1e9 + 0.5) as u64),
+            Self::Ticks(ticks) => Some(u64::from(ticks) * (1_000_000_000 / TICKS_PER_S)),
+        }
+    }
+
+    const fn len(&self) -> usize {
+        match self {
+            Self::Reference(_) => field::NS.end,
+            Self::External(..) => field::NS_VALID.end,
+            Self::SharedGps(..) | Self::Gps(..) => field::GPS_VALID.end,
+            Self::Ticks(_) => field::TICKS.end,
+        }
+    }
+
+    fn emit(&self, out: &mut [u8]) {
+        bytes::put_be(out, field::LEN..field::LEN + 1, self.len() as u8);
+        let mut kind =
+            |descriptor: u8| bytes::put_be(out, field::DESCRIPTOR..field::DESCRIPTOR + 1, descriptor);
+        match *self {
+            Self::Reference(ns) => {
+                kind(descriptor::REFERENCE);
+                bytes::put_be(out, field::NS, ns);
+            }
+            Self::External(ns, valid) => {
+                kind(descriptor::EXTERNAL);
+                bytes::put_be(out, field::NS, ns);
+                bytes::put_be(out, field::NS_VALID, valid);
+            }
+            Self::SharedGps(of_week, week, valid) | Self::Gps(of_week, week, valid) => {
+                let shared = matches!(self, Self::SharedGps(..));
+                kind(if shared { descriptor::SHARED_GPS } else { descriptor::GPS });
+                bytes::put_be(out, field::TIME_OF_WEEK, of_week);
+                bytes::put_be(out, field::WEEK, week);
+                bytes::put_be(out, field::GPS_VALID, valid);
+            }
+            Self::Ticks(ticks) => {
+                kind(descriptor::TICKS);
+                bytes::put_be(out, field::TICKS, ticks);
+            }
+        }
+    }
 }
 
 /// A view of the fields' bytes.
@@ -49,6 +132,10 @@ impl<T: AsRef<[u8]>> Payload<T> {
             let expected = match rest[field::DESCRIPTOR] {
                 descriptor::PRESSURE => field::SCALAR.end,
                 descriptor::ACCEL | descriptor::GYRO | descriptor::MAG => field::VECTOR.end,
+                descriptor::TICKS => field::TICKS.end,
+                descriptor::GPS | descriptor::SHARED_GPS => field::GPS_VALID.end,
+                descriptor::REFERENCE => field::NS.end,
+                descriptor::EXTERNAL => field::NS_VALID.end,
                 _ => len,
             };
             Error::check_length(expected, len)?;
@@ -72,6 +159,24 @@ impl<T: AsRef<[u8]>> Payload<T> {
 
     fn vector(&self, descriptor: u8) -> Option<[f32; 3]> {
         self.find(descriptor).map(|found| bytes::bes(found, field::VECTOR))
+    }
+
+    /// When the data were sampled.
+    pub fn time(&self) -> Option<Time> {
+        let gps = |found: &[u8]| {
+            let of_week = bytes::be(found, field::TIME_OF_WEEK);
+            (of_week, bytes::be(found, field::WEEK), bytes::be(found, field::GPS_VALID))
+        };
+        let ns = |found: &[u8]| bytes::be(found, field::NS);
+        let external = |found: &[u8]| Time::External(ns(found), bytes::be(found, field::NS_VALID));
+        let shared = |(of_week, week, valid)| Time::SharedGps(of_week, week, valid);
+        let own = |(of_week, week, valid)| Time::Gps(of_week, week, valid);
+        let reference = self.find(descriptor::REFERENCE).map(|found| Time::Reference(ns(found)));
+        reference
+            .or_else(|| self.find(descriptor::EXTERNAL).map(external))
+            .or_else(|| self.find(descriptor::SHARED_GPS).map(gps).map(shared))
+            .or_else(|| self.find(descriptor::GPS).map(gps).map(own))
+            .or_else(|| self.find(descriptor::TICKS).map(|found| Time::Ticks(bytes::be(found, field::TICKS))))
     }
 
     /// Pressure, mbar.
@@ -106,6 +211,8 @@ pub struct Repr {
     pub accel: Option<[f32; 3]>,
     /// Angular rate, rad/s.
     pub gyro: Option<[f32; 3]>,
+    /// When they were sampled.
+    pub time: Option<Time>,
 }
 
 impl Repr {
@@ -116,6 +223,7 @@ impl Repr {
             mag: payload.mag(),
             accel: payload.accel(),
             gyro: payload.gyro(),
+            time: payload.time(),
         }
     }
 
@@ -123,10 +231,14 @@ impl Repr {
     pub const fn buffer_len(&self) -> usize {
         let vectors =
             self.mag.is_some() as usize + self.accel.is_some() as usize + self.gyro.is_some() as usize;
-        self.pressure.is_some() as usize * field::SCALAR.end + vectors * field::VECTOR.end
+        let time = match &self.time {
+            Some(time) => time.len(),
+            None => 0,
+        };
+        self.pressure.is_some() as usize * field::SCALAR.end + vectors * field::VECTOR.end + time
     }
 
-    /// Writes the fields one after the other: pressure, mag, accel, gyro.
+    /// Writes the fields one after the other: pressure, mag, accel, gyro, time.
     pub fn emit(&self, out: &mut [u8]) {
         let mut at = 0;
         let mut put = |descriptor: u8, values: &[f32]| {
@@ -148,6 +260,9 @@ impl Repr {
                 put(descriptor, &vector);
             }
         }
+        if let Some((time, rest)) = self.time.zip(out.get_mut(at..)) {
+            time.emit(rest);
+        }
     }
 }
 
@@ -155,7 +270,7 @@ impl Repr {
 mod tests {
     use super::*;
 
-    const GOLDEN: [u8; MAX_LEN] = [
+    const GOLDEN: [u8; 48] = [
         0x06, 0x17, 0x44, 0x6c, 0x40, 0x00, 0x0e, 0x06, 0x3e, 0x80, 0x00, 0x00, 0x3d, 0x80, 0x00, 0x00, 0xbf,
         0x00, 0x00, 0x00, 0x0e, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xbf, 0x80, 0x00, 0x00,
         0x0e, 0x05, 0x3e, 0x00, 0x00, 0x00, 0xbe, 0x80, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x00,
@@ -167,6 +282,7 @@ mod tests {
             mag: Some([0.25, 0.0625, -0.5]),
             accel: Some([0.0, 0.0, -1.0]),
             gyro: Some([0.125, -0.25, 0.5]),
+            time: None,
         }
     }
 
@@ -193,12 +309,54 @@ mod tests {
     #[test]
     fn emit() {
         let mut bytes = [0xff; MAX_LEN];
-        assert_eq!(repr().buffer_len(), MAX_LEN);
+        assert_eq!(repr().buffer_len(), GOLDEN.len());
         repr().emit(&mut bytes);
-        assert_eq!(bytes, GOLDEN);
+        assert_eq!(bytes[..GOLDEN.len()], GOLDEN);
         let alone = Repr { gyro: repr().gyro, ..Repr::default() };
         assert_eq!(alone.buffer_len(), 14);
         alone.emit(&mut bytes);
         assert_eq!(bytes[..14], GOLDEN[34..]);
+    }
+
+    /// Each field that tells the time, as its bytes stand, what it says and that in ns.
+    const TIMES: [(&[u8], Time, u64); 5] = [
+        (&[10, 0xd5, 0, 0, 0, 1, 0, 0, 0, 2], Time::Reference((1 << 32) + 2), (1 << 32) + 2),
+        (&[12, 0xd7, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1], Time::External(256, 1), 256),
+        // 1.5 s into week 1.
+        (
+            &[14, 0xd3, 0x3f, 0xf8, 0, 0, 0, 0, 0, 0, 0, 1, 0, 3],
+            Time::SharedGps(1.5, 1, 3),
+            604_801_500_000_000,
+        ),
+        (&[14, 0x12, 0x3f, 0xf8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], Time::Gps(1.5, 0, 0), 1_500_000_000),
+        (&[6, 0x0e, 0, 0, 0, 3], Time::Ticks(3), 48_000),
+    ];
+
+    #[test]
+    fn the_time_is_read_from_whatever_field_has_it_and_the_steadiest_first() {
+        let mut all = [0; 56];
+        let mut at = all.len();
+        // From the least wanted on, so that each that is put in front of the others is asked for first.
+        for (field, time, ns) in TIMES.into_iter().rev() {
+            let alone = Repr::parse(&Payload::new_checked(field).unwrap());
+            assert_eq!((alone, time.ns()), (Repr { time: Some(time), ..Repr::default() }, Some(ns)));
+            let mut bytes = [0; MAX_LEN];
+            alone.emit(&mut bytes);
+            assert_eq!((&bytes[..field.len()], alone.buffer_len()), (field, field.len()));
+            at -= field.len();
+            all[at..at + field.len()].copy_from_slice(field);
+            assert_eq!(Payload::new_checked(&all[at..]).unwrap().time(), Some(time));
+            assert!(Payload::new_checked(&field[..field.len() - 1]).is_err(), "cut short");
+        }
+        let mut backwards = [0; 56];
+        let mut at = 0;
+        for (field, ..) in TIMES.into_iter().rev() {
+            backwards[at..at + field.len()].copy_from_slice(field);
+            at += field.len();
+        }
+        assert_eq!(Payload::new_checked(&backwards[..]).unwrap().time(), Some(TIMES[0].1), "in any order");
+        for none in [f64::NAN, -1.0, f64::INFINITY, 1e18] {
+            assert_eq!(Time::Gps(none, 7, 0).ns(), None, "{none}");
+        }
     }
 }

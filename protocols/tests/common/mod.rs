@@ -335,5 +335,6 @@ pub fn mip_packet(json: &Value) -> mip::imu::Repr {
         mag: vector("mag"),
         accel: vector("accel"),
         gyro: vector("gyro"),
+        time: None,
     }
 }

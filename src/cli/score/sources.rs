@@ -112,7 +112,7 @@ fn run(truth: &Truth, name: &str, data: &mut Option<Data>) -> Result<Source, Ref
 }
 
 fn of_dataset(folder: &Path) -> Result<Readings, Refusal> {
-    let of = |kind: SensorKind| match folder.join(format!("{kind}.csv")).exists() {
+    let of = |kind: SensorKind| match stored::has(folder, kind) {
         true => readings(folder, kind),
         false => Ok(Vec::new()),
     };

@@ -138,7 +138,7 @@ impl Dialogue for Mavlink {
 
 impl Ear {
     fn take(&mut self, received: Result<(Received, &[u8]), Error>, now: i64, say: &mut dyn FnMut(Said<'_>)) {
-        let Ok((Received { header, id, message }, packet)) = received else {
+        let Ok((Received { header, id, message, .. }, packet)) = received else {
             self.damaged += 1;
             return;
         };

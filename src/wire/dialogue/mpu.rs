@@ -44,11 +44,12 @@ impl Dialogue for Answers {
     }
 }
 
-/// The time whose microseconds are `t_us` modulo 2³² and which is nearest to `near`.
+/// The time whose microseconds are `t_us` modulo 2³² and which is nearest to `near`, but not before the beginning.
 pub(in crate::wire) fn unwrapped(t_us: u32, near: SimTime) -> SimTime {
     let near_us = near.0 / 1000;
     let ahead = t_us.wrapping_sub(near_us as u32) as i32;
-    SimTime((near_us + i64::from(ahead)).max(0) * 1000)
+    let nearest = near_us + i64::from(ahead);
+    SimTime(if nearest < 0 { nearest + (1 << 32) } else { nearest } * 1000)
 }
 
 #[cfg(test)]

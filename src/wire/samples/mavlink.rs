@@ -1,7 +1,8 @@
 //! `mavlink`, versions 1 and 2: HIL_SENSOR as simulators send it, HIGHRES_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 and RAW_IMU as autopilots
 //! send what their own sensors read; one sample for each sensor that a message says is new.
 
-use super::{Counts, Sample, Source};
+use super::damage::Stretches;
+use super::{Carrier, Counts, Sample, Source, log};
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
@@ -9,7 +10,7 @@ use crate::time::SimTime;
 use crate::wire::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
 use glam::DVec3;
 use ratetable_protocols::mavlink::{
-    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, hil_sensor,
+    Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, hil_sensor, known,
     scaled_imu,
 };
 use ratetable_protocols::{Error, Losses};
@@ -29,26 +30,70 @@ pub(super) fn ground_station(seq: u8) -> Vec<u8> {
 pub(super) struct Reader {
     decoder: Decoder,
     senders: Senders,
+    /// The beginning of a recording, until it is judged whether it has stamps.
+    unjudged: Option<Vec<u8>>,
 }
 
-/// The sequence of each sender, by system and component: several may share a link.
-#[derive(Default)]
-struct Senders(BTreeMap<[u8; 2], Losses>);
-
 impl Reader {
+    /// For a recording, which may be a ground station's log.
+    pub(super) fn recorded() -> Reader {
+        Reader { unjudged: Some(Vec::new()), ..Reader::default() }
+    }
+
     pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        let Reader { decoder, senders } = self;
-        decoder.feed(bytes, |received| senders.take(received, counts, each));
+        match &mut self.unjudged {
+            Some(held) => {
+                held.extend_from_slice(bytes);
+                if held.len() >= log::JUDGED {
+                    self.judge(counts, each);
+                }
+            }
+            None => self.read(bytes, counts, each),
+        }
     }
 
     pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        let Reader { decoder, senders } = self;
+        self.judge(counts, each);
+        let Reader { decoder, senders, .. } = self;
         decoder.finish(|received| {
             if received.is_ok() {
                 senders.take(received, counts, each);
             }
         });
     }
+
+    /// Reads what was held of a recording as what it turns out to be.
+    fn judge(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+        let Some(held) = self.unjudged.take() else { return };
+        if log::has_stamps(&held) {
+            self.decoder = Decoder::stamped();
+            counts.stamps = Some(log::Stamps::default());
+        }
+        self.read(&held, counts, each);
+    }
+
+    fn read(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+        let Reader { decoder, senders, .. } = self;
+        decoder.feed(bytes, |received| senders.take(received, counts, each));
+    }
+}
+
+/// Who is heard, by system and component: several may share a link.
+#[derive(Default)]
+struct Senders {
+    all: BTreeMap<[u8; 2], Sender>,
+    stretches: Stretches,
+    /// Bytes of the shortest packet; 0 before the first.
+    shortest: usize,
+}
+
+#[derive(Default)]
+struct Sender {
+    losses: Losses,
+    /// The numbers of packets that could not be checked, since the last that could.
+    unchecked: Vec<u8>,
+    /// How many damaged stretches there were at its last packet.
+    stretches: u64,
 }
 
 impl Senders {
@@ -58,18 +103,78 @@ impl Senders {
         counts: &mut Counts,
         each: &mut impl FnMut(Sample),
     ) {
-        let Ok(Received { header, id, message }) = received else { return counts.refuse() };
+        let Ok(received) = received else {
+            let before = counts.damaged;
+            counts.refuse();
+            if counts.damaged > before {
+                self.stretches.begin();
+            }
+            return;
+        };
         counts.packets += 1;
-        let sender = [header.system, header.component];
-        counts.number(self.0.entry(sender).or_default(), header.seq);
-        let name = message.map(|message| message.name());
-        match message.and_then(|message| Inertial::of(&message, sender)) {
-            Some(inertial) if inertial.is_fresh() => inertial.hand_on(each),
-            _ => match name {
-                Some(name) => counts.foreign(name),
+        let carrier = Carrier { arrived: received.stamp_us.and_then(log::time), lost: None };
+        counts.stamps.as_mut().zip(carrier.arrived).into_iter().for_each(|(stamps, t)| stamps.take(t));
+        let lost = self.number(&received, counts);
+        let Received { header: Header { system, component, .. }, id, message, .. } = received;
+        let carrier = Carrier { lost: Some(lost), ..carrier };
+        match message.and_then(|message| Inertial::of(&message, [system, component])) {
+            Some(inertial) if inertial.is_fresh() => inertial.hand_on(carrier, each),
+            _ => match known(id) {
+                Some(known) => counts.foreign(known.name),
                 None => counts.foreign(&format!("message {id}")),
             },
         }
+    }
+
+    /// Takes a packet's number in; how many of its sender are lost so far.
+    fn number(&mut self, received: &Received, counts: &mut Counts) -> u64 {
+        let Received { header: Header { seq, system, component, .. }, len, skipped, checked, .. } = *received;
+        self.stretches.end(skipped, if self.shortest == 0 { len } else { self.shortest });
+        self.shortest = if self.shortest == 0 { len } else { self.shortest.min(len) };
+        let sender = self.all.entry([system, component]).or_default();
+        if checked {
+            let before = counts.lost;
+            sender.number(seq, counts);
+            let missing = counts.lost.saturating_sub(before);
+            counts.damaged += self.stretches.claim(sender.stretches, missing);
+            sender.stretches = self.stretches.begun();
+        } else {
+            counts.unchecked += 1;
+            if sender.unchecked.len() < 256 {
+                sender.unchecked.push(seq);
+            }
+        }
+        sender.losses.lost()
+    }
+}
+
+impl Sender {
+    /// A longer gap is rather a packet that was overtaken.
+    const LONGEST_GAP: u8 = 239;
+
+    /// Takes in the number of a packet that was checked, after those that were not and lie between it and the last
+    /// that was: they fill the gap, and a wrong number among them opens none.
+    fn number(&mut self, seq: u8, counts: &mut Counts) {
+        let gap = self.last().map_or(0, |last| seq.wrapping_sub(last).wrapping_sub(1));
+        if gap < Sender::LONGEST_GAP
+            && let Some(last) = self.last()
+        {
+            let mut between: Vec<u8> = self
+                .unchecked
+                .iter()
+                .map(|other| other.wrapping_sub(last))
+                .filter(|k| (1..=gap).contains(k))
+                .collect();
+            between.sort_unstable();
+            between.dedup();
+            between.into_iter().for_each(|k| counts.number(&mut self.losses, last.wrapping_add(k)));
+        }
+        self.unchecked.clear();
+        counts.number(&mut self.losses, seq);
+    }
+
+    fn last(&self) -> Option<u8> {
+        self.losses.last()
     }
 }
 
@@ -137,13 +242,13 @@ impl Inertial {
         self.fresh.contains(&true)
     }
 
-    fn hand_on(&self, each: &mut impl FnMut(Sample)) {
+    fn hand_on(&self, packet: Carrier, each: &mut impl FnMut(Sample)) {
         let Inertial { source, t, fresh, values, units } = *self;
         let fresh = SensorKind::ALL.into_iter().zip(fresh).filter(|(_, fresh)| *fresh);
         for (kind, _) in fresh {
             let vector = |units: [f64; 4]| DVec3::from_array(values[kind as usize]) * units[kind as usize];
             let value = units.map(vector).filter(|value| value.is_finite()).map(Vector::from_vec);
-            each(Sample { kind, source, t, value });
+            each(Sample { kind, source, t, value, packet });
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `mpu`: registers back to readings, by the scales of the newest config packet.
 
-use super::{Counts, Sample, Source};
+use super::{Carrier, Counts, Sample, Source};
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::{Mount, SensorKind};
@@ -36,9 +36,11 @@ impl Reader {
             let first = SimTime(i64::from(t_us) * 1000);
             let t = newest.map_or(first, |newest| unwrapped(t_us, newest));
             *newest = Some(t);
+            let carrier = Carrier { lost: Some(losses.lost()), ..Carrier::default() };
             let mut sample = |kind: SensorKind, chip: Option<[f64; 3]>| {
                 let body = |[x, y, z]: [f64; 3]| mounts[kind as usize].to_body(Vector::new(x, y, z));
-                each(Sample { kind, source: Source::only("mpu"), t: Some(t), value: chip.map(body) });
+                let (source, value) = (Source::only("mpu"), chip.map(body));
+                each(Sample { kind, source, t: Some(t), value, packet: carrier });
             };
             match packet {
                 Packet::Config(new) => {

@@ -1,7 +1,7 @@
 //! `msp`: the simulator message back to readings, a sample of each sensor in every packet, new or held. It says no
 //! time, and of the field only the direction, so that one has no value.
 
-use super::{Counts, Sample, Source};
+use super::{Carrier, Counts, Sample, Source};
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::{Body, Vector};
 use crate::sensor::SensorKind;
@@ -39,7 +39,9 @@ fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut impl 
         };
         return counts.foreign(&format!("{way} {command}"));
     };
-    let mut sample = |kind, value| each(Sample { kind, source: Source::only("msp"), t: None, value });
+    let mut sample = |kind, value| {
+        each(Sample { kind, source: Source::only("msp"), t: None, value, packet: Carrier::default() })
+    };
     sample(SensorKind::Gyro, Some(body(seen.gyro, 1f64.to_radians() / GYRO_SCALE)));
     sample(SensorKind::Accel, Some(body(seen.accel, STANDARD_GRAVITY / ACCEL_SCALE)));
     // A field of exactly nothing is a magnetometer that is not there.

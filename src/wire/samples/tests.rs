@@ -292,15 +292,175 @@ fn a_damaged_packet_costs_itself_and_is_counted() {
                 let (samples, counts) = read(Samples::new(*protocol), &damaged.concat(), 4096);
                 let cost = packets[hurt].carries.count_ones() as usize;
                 assert_eq!(samples.len(), whole.len() - cost, "{protocol:?} packet {hurt} bit {bit}");
-                // A message of an id that is not known cannot be checked; it is counted by that id.
+                // A message of an id that is not known cannot be checked; it is counted by that id, and fills the gap
+                // that it leaves.
                 let unknown = counts.foreign.keys().any(|name| name.starts_with("message"));
                 let damaged = counts.damaged >= 1 && counts.lost == 1;
                 assert!(damaged != unknown, "{protocol:?} {counts:?}");
+                assert_eq!((counts.unchecked, unknown && counts.lost > 0), (u64::from(unknown), false));
                 let id = *protocol == Protocol::Mavlink && (7..10).contains(&(bit / 8));
                 assert!(!unknown || id, "only where the id itself is hurt: bit {bit}");
             }
         }
     }
+}
+
+/// A MAVLink 2 packet of any id with one byte of payload, its checksum by this last byte.
+fn frame(seq: u8, id: u32, extra: u8) -> Vec<u8> {
+    let [a, b, c, _] = id.to_le_bytes();
+    let mut frame = vec![0xfd, 1, 0, 0, seq, 1, 1, a, b, c, 7];
+    let seed = frame[1..].iter().chain([&extra]).fold(0xffff_u16, |crc, byte| {
+        let t = byte ^ crc as u8;
+        let t = u16::from(t ^ (t << 4));
+        (crc >> 8) ^ (t << 8) ^ (t << 3) ^ (t >> 4)
+    });
+    frame.extend(seed.to_le_bytes());
+    frame
+}
+
+/// VFR_HUD, which is not read here and whose checksum byte is 20, and an id of nobody's.
+const HUD: (u32, u8) = (74, 20);
+const NOBODY: (u32, u8) = (50_000, 99);
+
+#[test]
+fn a_wrong_number_is_believed_of_no_packet() {
+    for (id, extra) in [HUD, NOBODY] {
+        for bit in 0..8 {
+            let mut frames: Vec<Vec<u8>> = (0..100u8)
+                .map(|seq| if seq % 2 == 0 { frame(seq, HUD.0, HUD.1) } else { frame(seq, id, extra) })
+                .collect();
+            frames[51][4] ^= 1 << bit;
+            let (_, counts) = read(Samples::new(Protocol::Mavlink), &frames.concat(), 17);
+            // Where it cannot be checked it is a packet like its like, and the number that it should have is missing.
+            let (packets, damaged, unchecked) = if id == HUD.0 { (99, 1, 0) } else { (100, 0, 50) };
+            assert_eq!(
+                (counts.packets, counts.damaged, counts.lost),
+                (packets, damaged, 1),
+                "{id} bit {bit}"
+            );
+            assert_eq!(counts.unchecked, unchecked);
+        }
+    }
+}
+
+#[test]
+fn packets_that_cannot_be_checked_fill_the_gap_that_they_make() {
+    let frames = |left_out: &[usize]| -> Vec<u8> {
+        let of = |seq: usize| if seq.is_multiple_of(5) { HUD } else { NOBODY };
+        let sent = (0..600).filter(|seq| !left_out.contains(seq));
+        sent.flat_map(|seq| frame(seq as u8, of(seq).0, of(seq).1)).collect()
+    };
+    for left_out in [&[][..], &[12], &[15, 16, 17], &[255, 256, 257], &[400]] {
+        let (_, counts) = read(Samples::new(Protocol::Mavlink), &frames(left_out), 64);
+        assert_eq!(
+            (counts.lost, counts.damaged, counts.out_of_order),
+            (left_out.len() as u64, 0, 0),
+            "{left_out:?}"
+        );
+    }
+    // Of a sender of which nothing can be checked nothing is known.
+    let alone: Vec<u8> =
+        [1u8, 2, 9, 200].into_iter().flat_map(|seq| frame(seq, NOBODY.0, NOBODY.1)).collect();
+    let (_, counts) = read(Samples::new(Protocol::Mavlink), &alone, 64);
+    assert_eq!((counts.packets, counts.lost, counts.unchecked), (4, 0, 4));
+}
+
+#[test]
+fn damaged_packets_side_by_side_are_counted_by_their_numbers() {
+    for hurt in [&[50][..], &[50, 51], &[50, 51, 52, 53, 54], &[50, 51, 80], &[10, 11, 12, 60, 61]] {
+        let mut frames: Vec<Vec<u8>> = (0..100u8).map(|seq| frame(seq, HUD.0, HUD.1)).collect();
+        hurt.iter().for_each(|&at: &usize| frames[at][11] ^= 4);
+        let (_, counts) = read(Samples::new(Protocol::Mavlink), &frames.concat(), 64);
+        assert_eq!((counts.damaged, counts.lost), (hurt.len() as u64, hurt.len() as u64), "{hurt:?}");
+    }
+    // One damaged and three that never came are one damaged; bytes between whole packets hide none.
+    let mut frames: Vec<Vec<u8>> = (0..100u8).map(|seq| frame(seq, HUD.0, HUD.1)).collect();
+    frames[50][11] ^= 4;
+    frames.drain(51..54);
+    frames[20].extend([0x5a; 100]);
+    let (_, counts) = read(Samples::new(Protocol::Mavlink), &frames.concat(), 64);
+    assert_eq!((counts.damaged, counts.lost), (2, 4));
+}
+
+/// A log of HIL_SENSOR packets, every 10 ms by stamp and by sample time.
+fn log_of(packets: &[Packet]) -> Vec<Vec<u8>> {
+    let stamped = |(k, packet): (usize, &Packet)| {
+        let us = 1_700_000_000_000_000 + 10_000 * k as u64;
+        [&us.to_be_bytes()[..], packet.bytes()].concat()
+    };
+    packets.iter().enumerate().map(stamped).collect()
+}
+
+#[test]
+fn a_log_is_recognised_by_its_content_and_its_stamps_are_the_arrivals() {
+    let (_, packets) = &numbered()[1];
+    let records = log_of(&packets[..150]);
+    let of = |bytes: &[u8]| {
+        let all = [1, 7, 20_000].map(|piece| read(Samples::recorded(Protocol::Mavlink), bytes, piece));
+        assert!(all.iter().all(|one| one == &all[0]), "however it is cut up");
+        all[0].clone()
+    };
+    let (samples, counts) = of(&records.concat());
+    assert_eq!((counts.packets, counts.damaged, counts.lost, counts.joined_midway), (150, 0, 0, 0));
+    assert_eq!(counts.stamps.map(|stamps| (stamps.span_ns, stamps.steps)), Some((149 * 10_000_000, 0)));
+    let arrived: Vec<_> = samples.iter().map(|sample| sample.packet.arrived.unwrap().0).collect();
+    assert!(arrived.is_sorted() && arrived[0] >= 1_700_000_000_000_000_000);
+    // From the middle of a packet to the middle of one.
+    let cut = &records.concat()[20..];
+    let (_, counts) = of(&cut[..cut.len() - 9]);
+    assert_eq!((counts.packets, counts.damaged, counts.lost, counts.joined_midway), (148, 0, 0, 1));
+    assert!(counts.stamps.is_some());
+    // Damage in packets, in stamps, and stamps that step.
+    let mut hurt = records.clone();
+    [20, 21, 90].into_iter().for_each(|at: usize| hurt[at][8 + 12] ^= 1);
+    hurt[40][0] = 0xff;
+    let (_, counts) = of(&hurt.concat());
+    assert_eq!((counts.packets, counts.damaged, counts.lost), (147, 3, 3));
+    let mut stepped = records.clone();
+    stepped[70..]
+        .iter_mut()
+        .for_each(|record| record[..8].copy_from_slice(&1_600_000_000_000_000_u64.to_be_bytes()));
+    let (_, counts) = of(&stepped.concat());
+    assert_eq!(counts.stamps.map(|stamps| (stamps.span_ns, stamps.steps)), Some((69 * 10_000_000, 1)));
+    // Negative controls: the same packets without stamps, and a live stream of a log.
+    let (_, counts) = of(&bytes(&packets[..150]));
+    assert_eq!((counts.packets, counts.damaged, counts.stamps), (150, 0, None));
+    let (_, counts) = read(Samples::new(Protocol::Mavlink), &records.concat(), 64);
+    assert!(counts.stamps.is_none() && counts.damaged > 100);
+}
+
+#[test]
+fn fields_of_mip_that_tell_a_time_are_the_times_of_its_samples() {
+    use ratetable_protocols::mip::{self, imu};
+    let second = |time: fn(u64) -> imu::Time| {
+        let packet = |k: u64| {
+            let imu = imu::Repr { gyro: Some([0.0; 3]), time: Some(time(k)), ..Default::default() };
+            let mut bytes = [0; mip::MAX_LEN];
+            let len = mip::encode(&imu, &mut bytes).unwrap();
+            bytes[..len].to_vec()
+        };
+        let bytes: Vec<u8> = (0..1000).flat_map(packet).collect();
+        let samples = read(Samples::new(Protocol::Mip), &bytes, 33).0;
+        samples.windows(2).map(|pair| pair[1].t.unwrap().0 - pair[0].t.unwrap().0).collect::<Vec<_>>()
+    };
+    let times: [fn(u64) -> imu::Time; 5] = [
+        |k| imu::Time::Reference(k * 2_000_000),
+        |k| imu::Time::External((1 << 60) + k * 2_000_000, 1),
+        // Over the end of a week.
+        |k| imu::Time::SharedGps((604_799.0 + 0.002 * k as f64) % 604_800.0, 2300 + (k / 500) as u16, 3),
+        |k| imu::Time::Gps(5.0 + 0.002 * k as f64, 0, 0),
+        // Over the end of its 32 bits.
+        |k| imu::Time::Ticks((u32::MAX - 10_000).wrapping_add(k as u32 * 125)),
+    ];
+    for time in times {
+        assert!(second(time).iter().all(|step| (step - 2_000_000).abs() <= 1), "{:?}", time(0));
+    }
+    let no_time =
+        imu::Repr { gyro: Some([0.0; 3]), time: Some(imu::Time::Gps(f64::NAN, 1, 0)), ..Default::default() };
+    let mut bytes = [0; mip::MAX_LEN];
+    let len = mip::encode(&no_time, &mut bytes).unwrap();
+    let (samples, _) = read(Samples::new(Protocol::Mip), &bytes[..len], 33);
+    assert_eq!(samples.iter().map(|sample| sample.t).collect::<Vec<_>>(), [None], "seconds that are none");
 }
 
 #[test]

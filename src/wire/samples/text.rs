@@ -1,7 +1,7 @@
 //! `csv` and `jsonl`: a line a sample. Names and keys beyond ours are left alone, so that the lines of other
 //! programs read too.
 
-use super::{Counts, Sample, Source};
+use super::{Carrier, Counts, Sample, Source};
 use crate::geometry::Axes;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
@@ -114,7 +114,7 @@ impl Reader {
             _ => line.x.zip(line.y).zip(line.z).map(|((x, y), z)| DVec3::new(x, y, z)),
         };
         let value = value.filter(|value| value.is_finite()).map(|value| self.axes.body_in(value));
-        Sample { kind, source: self.source, t: Some(SimTime(line.t_ns)), value }
+        Sample { kind, source: self.source, t: Some(SimTime(line.t_ns)), value, packet: Carrier::default() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! `vectornav`: IMU packets back to readings, a sample of each sensor in every packet, new or held.
 
-use super::{Counts, Sample, Source};
+use super::{Carrier, Counts, Sample, Source};
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
@@ -34,7 +34,7 @@ fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut impl Fn
     let mut sample = |kind, values: [f32; 3], unit: f64| {
         let value = DVec3::from_array(values.map(f64::from)) * unit;
         let value = value.is_finite().then(|| Vector::from_vec(value));
-        each(Sample { kind, source: Source::only("vectornav"), t, value });
+        each(Sample { kind, source: Source::only("vectornav"), t, value, packet: Carrier::default() });
     };
     sample(SensorKind::Gyro, seen.gyro, 1.0);
     sample(SensorKind::Accel, seen.accel, 1.0);

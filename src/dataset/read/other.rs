@@ -1,0 +1,175 @@
+//! The tables of a dataset that was written without CSV: which file has them, and the checks that all formats share.
+
+use super::super::DatasetError;
+use super::super::manifest;
+#[cfg(feature = "mcap")]
+use super::mcap;
+#[cfg(feature = "parquet")]
+use super::parquet;
+use super::{Recorded, axes};
+use super::{mat, npy, tum};
+use crate::geometry::{Body, Vector};
+use crate::sensor::SensorKind;
+use crate::time::SimTime;
+use glam::{DQuat, DVec3};
+use std::path::{Path, PathBuf};
+
+/// Columns of a table: `t_ns`, and those that were asked for.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    pub times: Vec<i64>,
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// Time and value of each reading.
+type Readings = Vec<(SimTime, Vector<Body>)>;
+
+/// Which table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum What {
+    Truth,
+    Sensor(SensorKind),
+}
+
+impl What {
+    fn name(self) -> &'static str {
+        match self {
+            What::Truth => "truth",
+            What::Sensor(kind) => kind.name(),
+        }
+    }
+
+    fn columns(self) -> Vec<String> {
+        match self {
+            What::Truth => ["qw", "qx", "qy", "qz"].map(String::from).into(),
+            What::Sensor(kind) => ["x", "y", "z"].map(|axis| format!("{axis}_{}", kind.column_unit())).into(),
+        }
+    }
+}
+
+/// How a format is read: of its file, the table and the columns of these names.
+type Read = fn(&Path, What, &[&str]) -> Result<Rows, DatasetError>;
+
+/// Every format but CSV, the one to be preferred first: its name, its file if that is one for all tables, its reader
+/// if this build has it.
+const FORMATS: [(&str, Option<&str>, Option<Read>); 5] = [
+    ("npy", None, Some(npy::read)),
+    ("mat", None, Some(mat::read)),
+    #[cfg(feature = "parquet")]
+    ("parquet", None, Some(parquet::read)),
+    #[cfg(not(feature = "parquet"))]
+    ("parquet", None, None),
+    #[cfg(feature = "mcap")]
+    ("mcap", Some("dataset.mcap"), Some(mcap::read)),
+    #[cfg(not(feature = "mcap"))]
+    ("mcap", Some("dataset.mcap"), None),
+    ("tum", None, Some(tum::read)),
+];
+
+/// Whether the manifest of a folder says that it holds a sensor's readings.
+pub(super) fn lists(folder: &Path, kind: SensorKind) -> bool {
+    let json = manifest::read_json(folder).unwrap_or_default();
+    let sensors = json.get("sensors").and_then(|sensors| sensors.as_array());
+    sensors.into_iter().flatten().any(|sensor| sensor.get("name").is_some_and(|name| *name == kind.name()))
+}
+
+/// The attitudes of a dataset without `truth.csv`; `None` if no other format has them either.
+pub(super) fn truth(folder: &Path) -> Result<Option<Recorded>, DatasetError> {
+    let Some((file, rows)) = rows(folder, What::Truth)? else { return Ok(None) };
+    let axes = axes(&file)?;
+    let mut attitudes = Vec::with_capacity(rows.times.len());
+    for (i, t) in rows.times.iter().enumerate() {
+        let [w, x, y, z] = [0, 1, 2, 3].map(|of| rows.columns[of][i]);
+        let q = DQuat::from_xyzw(x, y, z, w);
+        if (q.length() - 1.0).abs() > 1e-3 {
+            let problem = format!("[{w}, {x}, {y}, {z}] has length {}, but a rotation's is 1", q.length());
+            return Err(wrong(&file, i, "qw..qz", problem));
+        }
+        attitudes.push((SimTime(*t), axes.attitude_in(q)));
+    }
+    Ok(Some(Recorded { axes, attitudes }))
+}
+
+/// One sensor's readings of a dataset without its CSV; `None` if no other format has them either.
+pub(super) fn readings(folder: &Path, kind: SensorKind) -> Result<Option<Readings>, DatasetError> {
+    let Some((file, rows)) = rows(folder, What::Sensor(kind))? else { return Ok(None) };
+    let axes = axes(&file)?;
+    let value = |i: usize| DVec3::from_array([0, 1, 2].map(|axis| rows.columns[axis][i]));
+    let reading = |(i, t): (usize, &i64)| (SimTime(*t), axes.body_in(value(i)));
+    Ok(Some(rows.times.iter().enumerate().map(reading).collect()))
+}
+
+/// The rows of a table, in order of time and every number finite, with the file that has them.
+fn rows(folder: &Path, what: What) -> Result<Option<(PathBuf, Rows)>, DatasetError> {
+    let names = what.columns();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    for (format, file, read) in FORMATS {
+        let file = folder.join(file.map_or(format!("{}.{format}", what.name()), String::from));
+        if !file.exists() {
+            continue;
+        }
+        let Some(read) = read else {
+            let problem = format!(
+                "this build does not read {format}: `cargo build --release --features {format}` makes one that does, and `generate --format csv` a dataset that any build reads"
+            );
+            return Err(DatasetError::Content { place: file.display().to_string(), problem });
+        };
+        let rows = read(&file, what, &names)?;
+        check(&file, &rows, &names)?;
+        return Ok(Some((file, rows)));
+    }
+    if what != What::Truth && folder.join("truth.tum").exists() && lists(folder, SensorKind::Gyro) {
+        let problem = format!(
+            "TUM trajectories hold attitudes alone, and no other format has the readings of {}: generate it with --format csv, npy, mat, parquet or mcap besides",
+            what.name()
+        );
+        return Err(DatasetError::Content { place: folder.display().to_string(), problem });
+    }
+    Ok(None)
+}
+
+fn check(file: &Path, rows: &Rows, names: &[&str]) -> Result<(), DatasetError> {
+    if let Some(i) = rows.times.windows(2).position(|pair| pair[1] <= pair[0]) {
+        let problem =
+            format!("{} is not after {}, the time of the row before", rows.times[i + 1], rows.times[i]);
+        return Err(wrong(file, i + 1, "t_ns", problem));
+    }
+    for (column, name) in rows.columns.iter().zip(names) {
+        if column.len() != rows.times.len() {
+            let problem = format!("has {} rows, and t_ns {}", column.len(), rows.times.len());
+            return Err(DatasetError::Content {
+                place: format!("{}, column {name}", file.display()),
+                problem,
+            });
+        }
+        if let Some(i) = column.iter().position(|value| !value.is_finite()) {
+            return Err(wrong(file, i, name, format!("{} is no number", column[i])));
+        }
+    }
+    Ok(())
+}
+
+/// A mistake in a row, the first of which is row 1.
+fn wrong(file: &Path, row: usize, column: &str, problem: String) -> DatasetError {
+    DatasetError::Content { place: format!("{}, row {}, column {column}", file.display(), row + 1), problem }
+}
+
+/// A mistake of the whole file.
+pub(super) fn refuse(file: &Path, problem: impl ToString) -> DatasetError {
+    DatasetError::Content { place: file.display().to_string(), problem: problem.to_string() }
+}
+
+/// The places of the columns asked for among those that a file has.
+pub(super) fn places(file: &Path, has: &[String], names: &[&str]) -> Result<Vec<usize>, DatasetError> {
+    let find = |name: &&str| has.iter().position(|column| column == name);
+    let missing =
+        |name: &str| refuse(file, format!("has no column `{name}`; its columns are {}", has.join(", ")));
+    names.iter().map(|name| find(name).ok_or_else(|| missing(name))).collect()
+}
+
+/// Opens a file; how many bytes it has.
+pub(super) fn open(file: &Path) -> Result<(std::io::BufReader<std::fs::File>, u64), DatasetError> {
+    let opened = std::fs::File::open(file).map_err(DatasetError::io("read", file))?;
+    let len = opened.metadata().map_err(DatasetError::io("read", file))?.len();
+    Ok((std::io::BufReader::with_capacity(1 << 18, opened), len))
+}
