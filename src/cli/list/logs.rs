@@ -3,7 +3,7 @@
 use super::List;
 
 /// What there is of them: name, how it is told, what it holds, who reads it.
-const LOGS: [[&str; 4]; 5] = [
+const LOGS: [[&str; 4]; 6] = [
     [
         "dataset",
         "a folder with a manifest.json",
@@ -23,6 +23,12 @@ const LOGS: [[&str; 4]; 5] = [
         "score",
     ],
     ["ulog", "begins with the bytes `ULog`", "a PX4 log: the topic vehicle_attitude", "score"],
+    [
+        "tlog",
+        "8 bytes of µs before each MAVLink packet",
+        "what a ground station received, and when",
+        "listen: ratetable listen mavlink@file:PATH",
+    ],
     [
         "stream",
         "packets of a protocol, as file:PATH recorded them",
