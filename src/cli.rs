@@ -4,6 +4,7 @@ mod budget;
 mod check;
 mod clash;
 mod demo;
+mod examples;
 mod generate;
 mod list;
 mod listen;
@@ -11,8 +12,10 @@ mod options;
 mod progress;
 mod run;
 mod score;
+mod shell;
 mod study;
 mod summary;
+mod terminal;
 mod timing;
 
 use clap::{Parser, Subcommand};
@@ -22,7 +25,7 @@ use std::process::ExitCode;
 /// A rate table in software: plays a scene and writes its gyro, accelerometer and magnetometer readings, on time, to
 /// a flight controller; or makes a dataset of them with exact truth.
 #[derive(Debug, Parser)]
-#[command(name = "ratetable", version, about, propagate_version = true, arg_required_else_help = true)]
+#[command(name = "ratetable", version, about, propagate_version = true, arg_required_else_help = true, after_help = examples::PROGRAM)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -31,21 +34,35 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Stream a scene in real time; without a link, demonstrate it on a pty pair with an AHRS on the other end
+    #[command(after_help = examples::RUN)]
     Run(run::Arguments),
     /// Measure how late and how even a stream is, at both ends and against a bare timer
+    #[command(after_help = examples::TIMING)]
     Timing(timing::Arguments),
     /// Make a dataset: readings, exact truth, manifest
+    #[command(after_help = examples::GENERATE)]
     Generate(generate::Arguments),
     /// Read a scene and show the plan: sensors, noise, bytes a second, warnings
+    #[command(after_help = examples::CHECK)]
     Check(check::Arguments),
     /// Measure anybody's stream: rates, intervals, losses and damage of each sensor
+    #[command(after_help = examples::LISTEN)]
     Listen(listen::Arguments),
     /// Judge recorded attitude estimates and filters against the truth: errors, delay, mistakes of axes and order
+    #[command(after_help = examples::SCORE)]
     Score(score::Arguments),
     /// Compare the attitude methods: error against cost on many motions, and what breaks each
+    #[command(after_help = examples::STUDY)]
     Study(study::Arguments),
-    /// Show what there is: scenes, parts, motions, methods, protocols, links, ports
+    /// Show what there is: scenes, parts, motions, methods, keys, protocols, targets, links, formats, fields, logs, ports
+    #[command(after_help = examples::LIST)]
     List(list::Arguments),
+    /// Print a shell's completions of this command line
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(shell::CompletionsArguments),
+    /// Print the manual page, or write one for each command
+    #[command(after_help = examples::MAN)]
+    Man(shell::ManArguments),
 }
 
 /// What a command came to.
@@ -93,6 +110,8 @@ pub fn main() -> ExitCode {
         Command::Score(arguments) => score::score(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::List(arguments) => list::list(&arguments),
+        Command::Completions(arguments) => shell::completions(&arguments),
+        Command::Man(arguments) => shell::man(&arguments),
     };
     match verdict {
         Ok(Verdict::Fine) => ExitCode::SUCCESS,
@@ -107,6 +126,10 @@ pub fn main() -> ExitCode {
 
 /// Shows help that was asked for, or what is wrong with the arguments: the exit code.
 fn explained(error: &clap::Error) -> u8 {
+    if error.kind() == clap::error::ErrorKind::InvalidUtf8 {
+        unreadable();
+        return 2;
+    }
     let shown = error.print();
     if error.use_stderr() {
         return 2;
@@ -117,6 +140,16 @@ fn explained(error: &clap::Error) -> u8 {
             tell(&message);
             2
         }
+    }
+}
+
+/// Names the arguments that are no UTF-8.
+fn unreadable() {
+    let broken = std::env::args_os().enumerate().skip(1).filter(|(_, argument)| argument.to_str().is_none());
+    for (i, argument) in broken {
+        tell(&format!(
+            "argument {i}, {argument:?}, is no UTF-8: scenes, keys and links are named in UTF-8, and only the folder of --out may be called otherwise; rename the file, or set the terminal to UTF-8"
+        ));
     }
 }
 

@@ -4,6 +4,7 @@ pub mod chart;
 mod heard;
 mod limit;
 mod scored;
+mod table;
 mod text;
 mod times;
 mod timing;
@@ -11,7 +12,8 @@ mod timing;
 pub use heard::{HeardLink, HeardReport, HeardSensor};
 pub use limit::{Limit, LimitError};
 pub use scored::{ScoreReport, Scored};
-pub use text::{number, table};
+pub use table::{table, table_within, wrap};
+pub use text::{count, number};
 pub use times::Times;
 pub use timing::{Baseline, SensorTiming, TimingReport};
 

@@ -42,7 +42,7 @@ pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS, takes};
 pub use output::{Destination, Output, Overload};
 pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
-pub use sweep::{Runs, SweptValue};
+pub use sweep::{Runs, SweptKey, SweptValue};
 pub use target::{TARGETS, Target};
 
 use crate::earth::{self, Day};

@@ -101,6 +101,13 @@ pub enum Event<'a> {
     Ready(&'a str),
     /// A ground station is spoken to there.
     Ground(&'a str),
+    /// Nobody has come to that link yet: until that is so for this long, it is waited for somebody.
+    Waiting {
+        /// Who is waited for, and where.
+        whom: String,
+        /// From now on, at the most.
+        left: Duration,
+    },
     /// The controller on that link is waited for: nothing is streamed before it is heard.
     Silent(&'a str),
     /// The stream starts with the vehicle held still.

@@ -6,8 +6,9 @@ mod text;
 
 use super::budget::Budget;
 use super::{Refusal, Verdict, generate, options, say};
-use crate::scene::{Plan, Reference};
-use crate::sensor::{SensorKind, SensorPlan, lsb, white_noise};
+use crate::motion::method::Choice;
+use crate::scene::{Drawn, Plan, Reference, Runs};
+use crate::sensor::{SensorKind, SensorPlan, TERMS, lsb, white_noise};
 use crate::wire;
 
 #[derive(Debug, clap::Args)]
@@ -23,18 +24,47 @@ pub struct Arguments {
 }
 
 pub fn check(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    let runs = Runs::load(&arguments.scene, &arguments.set)?;
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
     options::limits(&[], &plan)?;
     generate::affordable(&plan, 1)?;
     let settle = |reference: Reference| reference.settled(&plan.trajectory, plan.duration);
     let reference = plan.reference.map(settle).transpose();
     let reference = reference.map_err(|why| Refusal(format!("[reference]: {why}")))?;
+    let checked = Checked { plan: &plan, runs: &runs, reference: reference.as_ref() };
     if arguments.json {
-        say(&(serde_json::to_string_pretty(&json::json(&plan, reference.as_ref()))? + "\n"))?;
+        say(&(serde_json::to_string_pretty(&json::json(&checked))? + "\n"))?;
     } else {
-        say(&text::text(&plan, reference.as_ref()))?;
+        say(&text::text(&checked))?;
     }
     Ok(Verdict::Fine)
+}
+
+/// A scene as it was read.
+struct Checked<'a> {
+    plan: &'a Plan,
+    /// The scene as one of many runs.
+    runs: &'a Runs,
+    /// The attitude beside the truth, and why it is computed so where that was left to us.
+    reference: Option<&'a (Reference, Option<Choice>)>,
+}
+
+/// The values drawn for this run that one of its terms uses.
+fn drawn(plan: &Plan) -> Vec<&Drawn> {
+    let is_used = |drawn: &&Drawn| {
+        let mut path = drawn.key.split('.');
+        let (of, key) = (path.next(), path.next());
+        let Some(sensor) = plan.sensors.iter().find(|sensor| Some(sensor.kind.name()) == of) else {
+            return true;
+        };
+        let used = terms(plan, sensor);
+        let mut of_key = TERMS
+            .iter()
+            .filter(|term| (term.keys)(sensor.kind).iter().any(|declared| Some(declared.name) == key));
+        let declared = of_key.clone().next().is_some();
+        !declared || of_key.any(|term| used.contains(&term.name))
+    };
+    plan.drawn.iter().filter(is_used).collect()
 }
 
 /// A sensor's white noise, said in each of the ways that users meet.

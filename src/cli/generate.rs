@@ -1,14 +1,14 @@
 //! `ratetable generate`: a dataset.
 
 use super::progress::Bar;
-use super::{Refusal, Verdict, clash, tell};
+use super::{Refusal, Verdict, clash, list, options, tell};
 use crate::dataset::{
     self, Bounds, FEATURES, FORMATS, Figure, Format, Holds, Made, Options, RunOptions, Shard, Summary,
 };
 use crate::interrupt::on_interrupt;
 use crate::parallel;
-use crate::report::Report;
 use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
+use crate::report::{Report, count};
 use crate::scene::{Plan, Runs, nearest};
 use crate::session::Outcome;
 use std::path::{Path, PathBuf};
@@ -24,15 +24,14 @@ pub struct Arguments {
     /// The folder to make
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// In which formats, separated by commas
-    #[arg(long, value_name = "FORMAT", value_delimiter = ',', default_value = "csv", value_parser = format)]
+    #[arg(long, value_name = "FORMAT", help = formats_help(), value_delimiter = ',', default_value = "csv", value_parser = format)]
     format: Vec<&'static Format>,
     /// Override one key of the scene, such as gyro.rate='8 kHz'
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Make this many runs of the scene, each in a folder of its own, seeded by its index and with its part of [sweep]
     /// (default where [sweep] has lists: every combination once)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = options::runs)]
     runs: Option<u64>,
     /// Make only the runs whose index leaves the remainder I when divided by N
     #[arg(long, value_name = "I/N")]
@@ -43,6 +42,10 @@ pub struct Arguments {
     /// Replace the folder if there is one
     #[arg(long)]
     force: bool,
+}
+
+fn formats_help() -> String {
+    format!("In which formats, separated by commas: {}", list::formats::named())
 }
 
 fn format(name: &str) -> Result<&'static Format, String> {
@@ -85,10 +88,10 @@ pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let summary = written?;
     let seconds = started.elapsed().as_secs_f64();
     tell(&format!(
-        "{}: {} of scene, {} rows in {seconds:.2} s",
+        "{}: {} of scene, {} in {seconds:.2} s",
         summary.folder.display(),
         plan.duration,
-        summary.rows
+        count(summary.rows, "row")
     ));
     say_clipped(&plan, &summary);
     Ok(Verdict::Fine)
@@ -131,11 +134,16 @@ fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal
     let made = dataset::write_runs(scene, &arguments.out, &options);
     bar.clear();
     let Made { written, kept } = made?;
-    let there = if kept > 0 { format!(", {kept} were there already") } else { String::new() };
+    let there = match kept {
+        0 => String::new(),
+        1 => ", 1 was there already".to_string(),
+        kept => format!(", {kept} were there already"),
+    };
     let seconds = started.elapsed().as_secs_f64();
     tell(&format!(
-        "{}: {written} runs of {} in {seconds:.2} s{there}",
+        "{}: {} of {} in {seconds:.2} s{there}",
         arguments.out.display(),
+        count(written, "run"),
         first.duration
     ));
     Ok(Verdict::Fine)
@@ -149,7 +157,9 @@ pub fn affordable(plan: &Plan, runs: u64) -> Result<(), Refusal> {
 
 fn say_clipped(plan: &Plan, summary: &Summary) {
     for (sensor, clipped) in plan.sensors.iter().zip(&summary.clipped).filter(|(_, clipped)| **clipped > 0) {
-        tell(&format!("notice: {clipped} {} samples were beyond the range and are clipped", sensor.kind));
+        let (samples, are) =
+            (count(*clipped, &format!("{} sample", sensor.kind)), if *clipped == 1 { "is" } else { "are" });
+        tell(&format!("notice: {samples} beyond the range {are} clipped"));
     }
 }
 
@@ -231,6 +241,6 @@ pub fn after_run(
         ..Options::new(&mut progress)
     };
     let summary = dataset::write(plan, outcome.played, dir, options)?;
-    tell(&format!("{}: {} rows", summary.folder.display(), summary.rows));
+    tell(&format!("{}: {}", summary.folder.display(), count(summary.rows, "row")));
     Ok(())
 }

@@ -1,184 +1,224 @@
-//! `ratetable list`: what there is.
+//! `ratetable list`: what there is, or one thing of it with all that is known of it.
 
+mod fields;
+pub(super) mod formats;
+mod keys;
+mod logs;
+mod parts;
+
+use super::terminal::Stream;
 use super::{Refusal, Verdict, say};
-use crate::keys::{Key, Takes};
+use crate::link;
 use crate::motion::method::{METHODS, MethodKind};
-use crate::report::table;
-use crate::scene::parts::{Filter, OutputRate, Scale, Settings};
-use crate::scene::{self, builtin};
-use crate::sensor::{self, SensorKind, parts};
+use crate::scene::{TARGETS, Target, builtin, nearest};
 use crate::wire::Protocol;
-use crate::{link, motion};
 use clap::ValueEnum;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Which list; all of them without it
     what: Option<What>,
+    /// One of it, with everything that is known of it, such as `list parts MPU-9250` or `list keys gyro.bias`
+    #[arg(requires = "what")]
+    name: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum What {
-    /// Built-in scenes
+    /// Built-in scenes; one by name: its file, to copy
     Scenes,
-    /// Sensors known by their datasheet, each value with its source
+    /// Sensors known by their datasheet; one by name: its data, each value with its unit and source
     Parts,
     /// Kinds of motion and their keys
     Motions,
     /// Ways to step attitude, for `[reference]` and `study`
     Methods,
-    /// Every key of a scene file
+    /// Every key of a scene file: what it takes, its unit, range and default
     Keys,
     /// What packets look like
     Protocols,
+    /// Flight controllers by name, and what each name stands for
+    Targets,
     /// Where packets go
     Links,
+    /// Formats of datasets, and those that this build lacks
+    Formats,
+    /// What `--limit` may name in the report of each command, with its unit
+    Fields,
+    /// Kinds of files that `score` and the motion `replay` read
+    Logs,
     /// Serial ports of this machine
     Ports,
 }
 
-pub fn list(arguments: &Arguments) -> Result<Verdict, Refusal> {
-    for what in What::value_variants() {
-        if arguments.what.is_none_or(|asked| asked == *what) {
-            let name = what.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
-            let heading = if arguments.what.is_none() { format!("{name}\n") } else { String::new() };
-            let indent = if arguments.what.is_none() { "  " } else { "" };
-            let body = body(*what)?;
-            let lines: String =
-                body.lines().map(|line| format!("{}\n", format!("{indent}{line}").trim_end())).collect();
-            say(&format!("{heading}{lines}"))?;
+/// One thing of a list.
+pub struct Item {
+    /// What it answers to; the first is what it is called.
+    names: Vec<String>,
+    /// What is said of it where the whole list is asked for.
+    brief: Brief,
+    /// What is said of it where it alone is.
+    whole: String,
+}
+
+/// What is said of a thing among others.
+pub enum Brief {
+    /// A row of the list's table.
+    Row(Vec<String>),
+    /// Lines of its own.
+    Lines(String),
+}
+
+/// A list: the heading of its table, if it has one, its things, and what stands below.
+pub struct List {
+    heading: Vec<&'static str>,
+    items: Vec<Item>,
+    below: String,
+}
+
+impl List {
+    /// A table of which a row says all there is.
+    fn of_rows(heading: &[&'static str], rows: Vec<Vec<String>>) -> List {
+        let item = |row: Vec<String>| Item {
+            names: row.first().cloned().into_iter().collect(),
+            whole: whole(heading, &row),
+            brief: Brief::Row(row),
+        };
+        List { heading: heading.to_vec(), items: rows.into_iter().map(item).collect(), below: String::new() }
+    }
+
+    /// Things of several lines, the same alone as among others.
+    fn of_lines(items: impl IntoIterator<Item = (Vec<String>, String)>) -> List {
+        let item = |(names, lines): (Vec<String>, String)| Item {
+            names,
+            brief: Brief::Lines(lines.clone()),
+            whole: lines,
+        };
+        List { heading: Vec::new(), items: items.into_iter().map(item).collect(), below: String::new() }
+    }
+
+    /// Everything.
+    fn text(&self) -> String {
+        let mut text = String::new();
+        let rows = self.items.iter().filter_map(|item| match &item.brief {
+            Brief::Row(row) => Some(row.clone()),
+            Brief::Lines(_) => None,
+        });
+        let rows: Vec<_> = rows.collect();
+        if !rows.is_empty() {
+            text += &Stream::Out.table(&self.heading, &rows);
         }
+        for item in &self.items {
+            if let Brief::Lines(lines) = &item.brief {
+                text += &Stream::Out.fold(lines);
+            }
+        }
+        text + &Stream::Out.fold(&self.below)
+    }
+}
+
+/// A row alone: a line a column.
+fn whole(heading: &[&str], row: &[String]) -> String {
+    heading.iter().zip(row).map(|(heading, cell)| format!("{heading}: {cell}\n")).collect()
+}
+
+pub fn list(arguments: &Arguments) -> Result<Verdict, Refusal> {
+    match (arguments.what, &arguments.name) {
+        (None, _) => {
+            for what in What::value_variants() {
+                let body: String = list_of(*what)?.text().lines().map(|line| indented(line) + "\n").collect();
+                say(&format!("{}\n{body}", name_of(*what)))?;
+            }
+        }
+        (Some(what), None) => say(&list_of(what)?.text())?,
+        (Some(what), Some(name)) => say(&one(what, name)?)?,
     }
     Ok(Verdict::Fine)
 }
 
-fn body(what: What) -> Result<String, Refusal> {
+fn indented(line: &str) -> String {
+    format!("  {line}").trim_end().to_string()
+}
+
+fn name_of(what: What) -> String {
+    what.to_possible_value().map_or(String::new(), |value| value.get_name().to_string())
+}
+
+/// All that is known of one thing, whatever the case its name is written in.
+fn one(what: What, name: &str) -> Result<String, Refusal> {
+    let list = list_of(what)?;
+    let named = |item: &&Item| item.names.iter().any(|known| known.eq_ignore_ascii_case(name));
+    if let Some(item) = list.items.iter().find(named) {
+        // A scene is a file, which is to be copied as it is.
+        return Ok(if what == What::Scenes { item.whole.clone() } else { Stream::Out.fold(&item.whole) });
+    }
+    let names = || list.items.iter().flat_map(|item| item.names.iter().map(String::as_str));
+    let near = nearest(name, names()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let mut firsts: Vec<_> = list.items.iter().filter_map(|item| item.names.first()).cloned().collect();
+    firsts.dedup();
+    let there = match firsts.len() {
+        0 => "there are none".to_string(),
+        n if n > MOST_NAMES => format!("`ratetable list {}` shows them", name_of(what)),
+        _ => format!("there are {}", firsts.join(", ")),
+    };
+    Err(Refusal(format!("`{name}` is none of the {}: {there}{near}", name_of(what))))
+}
+
+/// So many names are told in a message at the most.
+const MOST_NAMES: usize = 40;
+
+fn list_of(what: What) -> Result<List, Refusal> {
     Ok(match what {
-        What::Scenes => table(
-            &["name", "about"],
-            &builtin::SCENES.map(|(name, text)| vec![name.into(), builtin::about(text).into()]),
-        ),
-        What::Parts => parts()?,
-        What::Motions => motions(),
+        What::Scenes => scenes(),
+        What::Parts => parts::list()?,
+        What::Motions => keys::motions(),
         What::Methods => methods(),
-        What::Keys => keys(),
+        What::Keys => keys::list(),
         What::Protocols => {
             let row = |protocol: Protocol| vec![protocol.name().into(), protocol.about().into()];
-            table(&["name", "about"], &Protocol::ALL.map(row)) + "\n" + &targets()
+            List::of_rows(&["name", "about"], Protocol::ALL.map(row).to_vec())
         }
+        What::Targets => targets(),
         What::Links => {
             let row = |scheme: &link::Scheme| vec![scheme.spelling.into(), scheme.about.into()];
-            table(&["spelled", "about"], &link::SCHEMES.iter().map(row).collect::<Vec<_>>())
+            let mut list =
+                List::of_rows(&["spelled", "about"], link::SCHEMES.iter().map(row).collect::<Vec<_>>());
+            for (item, scheme) in list.items.iter_mut().zip(link::SCHEMES.iter()) {
+                item.names.push(scheme.name.to_string());
+            }
+            list
         }
+        What::Formats => formats::list(),
+        What::Fields => fields::list()?,
+        What::Logs => logs::list(),
         What::Ports => ports(),
     })
 }
 
-/// Flight controllers, each with what its name stands for.
-fn targets() -> String {
-    let mut text = "targets: a flight controller's name in place of a protocol\n".to_string();
-    for target in &scene::TARGETS {
-        text += &format!("{}: {}\n", target.name, target.about);
-        target.expansion().iter().for_each(|line| text += &format!("  {line}\n"));
-    }
-    text
-}
-
-fn parts() -> Result<String, Refusal> {
-    let mut text = String::new();
-    for part in parts::all() {
-        text += &format!("{}: {}\n", part.names.join(", "), part.about);
-        for value in scene::parts::sources(part).map_err(|mistake| Refusal(mistake.to_string()))? {
-            text += &format!("  {} {} = {}\n      {}\n", value.sensor, value.key, value.value, value.source);
-        }
-        for kind in SensorKind::ALL {
-            let settings =
-                scene::parts::settings(part, kind).map_err(|mistake| Refusal(mistake.to_string()))?;
-            text += &choices(kind, &settings);
-        }
-    }
-    Ok(text)
-}
-
-/// What a sensor of a part can be set to.
-fn choices(kind: SensorKind, settings: &Settings) -> String {
-    let mut text = String::new();
-    for (name, source) in &settings.sources {
-        let choices = match *name {
-            "scales" => settings.scales.iter().map(Scale::to_string).collect(),
-            "rates" => settings.rates.iter().map(OutputRate::to_string).collect(),
-            _ => settings.filters.iter().map(Filter::to_string).collect::<Vec<_>>(),
-        };
-        text += &format!("  {kind} {name}: {}\n      {source}\n", choices.join("; "));
-    }
-    text
-}
-
-/// Every table and key of a scene.
-fn keys() -> String {
-    let mut text = String::new();
-    let mut table = None;
-    for (of, key, about) in scene::FIXED_KEYS {
-        if table != Some(of) {
-            let name = if of.is_empty() { "(the scene itself)".to_string() } else { format!("[{of}]") };
-            text += &format!("{name}\n");
-            table = Some(of);
-        }
-        text += &format!("  {key}: {about}\n");
-    }
-    for sensor in SensorKind::ALL {
-        text += &format!("[{sensor}]\n");
-        for (key, about) in scene::SENSOR_KEYS.iter().filter(|(key, _)| scene::takes(sensor, key)) {
-            text += &format!("  {key}: {about}\n");
-        }
-        sensor::keys(sensor).iter().for_each(|key| text += &declared(key));
-    }
-    text
-}
-
-/// A declared key with what it takes.
-fn declared(key: &Key) -> String {
-    let takes = match key.takes {
-        Takes::Scalar(kind)
-        | Takes::PerAxis(kind)
-        | Takes::BodyVector(kind)
-        | Takes::NavVector(kind)
-        | Takes::OneAxis(kind)
-        | Takes::Resolution(kind) => {
-            format!("{}, such as \"{}\"", kind.name(), kind.example())
-        }
-        Takes::Duration => "time, such as \"2 s\"".into(),
-        Takes::Word(words) => words.join(" or "),
-        Takes::Keyframes => "an array, such as [{ t = \"2 s\", attitude = \"[0, 30, 0] deg\" }]".into(),
-        Takes::File => "a path, relative to the scene's folder".into(),
-        Takes::Matrix(kind) => {
-            format!(
-                "{}, one number, a vector (the diagonal) or three rows, such as \"{}\"",
-                kind.name(),
-                kind.example()
-            )
-        }
-        Takes::Flag => "true or false".into(),
-        Takes::Whole(least, most) => format!("a whole number from {least} to {most}"),
-        Takes::Table(nested) => {
-            format!("a table{}, such as {}", if nested.many { " or several" } else { "" }, nested.example)
-        }
-        Takes::Columns(columns) => format!("columns, such as {}", columns.example()),
+fn scenes() -> List {
+    let item = |(name, text): (&str, &str)| Item {
+        names: vec![name.to_string()],
+        brief: Brief::Row(vec![name.into(), builtin::about(text).into()]),
+        whole: text.to_string(),
     };
-    let default = key.default.map_or(String::new(), |default| format!(" (default {default})"));
-    format!("  {}: {}; {takes}{default}\n", key.name, key.about)
-}
-
-fn motions() -> String {
-    let mut text = String::new();
-    for kind in motion::KINDS {
-        text += &format!("{}: {}\n", kind.name, kind.about);
-        kind.keys.iter().for_each(|key| text += &declared(key));
+    let items = builtin::SCENES.map(item).into();
+    List {
+        heading: vec!["name", "about"],
+        items,
+        below: "a scene's file, to copy: ratetable list scenes NAME\n".into(),
     }
-    text
 }
 
-fn methods() -> String {
+/// Flight controllers, each with what its name stands for.
+fn targets() -> List {
+    List::of_lines(TARGETS.iter().map(|target: &Target| {
+        let mut lines = format!("{}: {}\n", target.name, target.about);
+        target.expansion().iter().for_each(|line| lines += &format!("  {line}\n"));
+        (vec![target.name.to_string()], lines)
+    }))
+}
+
+fn methods() -> List {
     let row = |method: &MethodKind| {
         let precisions: Vec<_> = method.precisions.iter().map(|precision| precision.name()).collect();
         vec![
@@ -190,17 +230,20 @@ fn methods() -> String {
             method.about.into(),
         ]
     };
-    table(&["name", "order", "input a step", "studied in", "ns a step", "about"], &METHODS.map(row))
+    let heading = ["name", "order", "input a step", "studied in", "ns a step", "about"];
+    List::of_rows(&heading, METHODS.iter().map(|method| row(method)).collect())
 }
 
-fn ports() -> String {
+fn ports() -> List {
     let ports = link::ports();
-    if ports.is_empty() {
-        return "no serial port was found; a pty needs none: ratetable run SCENE --to mpu@pty\n".into();
-    }
     let known = |text: Option<String>| text.unwrap_or_else(|| "-".into());
     let rows = ports.into_iter().map(|port| {
         vec![port.path.display().to_string(), known(port.product), known(port.manufacturer), port.command]
     });
-    table(&["port", "product", "manufacturer", "try"], &rows.collect::<Vec<_>>())
+    let mut list = List::of_rows(&["port", "product", "manufacturer", "try"], rows.collect());
+    if list.items.is_empty() {
+        list.below =
+            "no serial port was found; a pty needs none: ratetable run SCENE --to mpu@pty\n".to_string();
+    }
+    list
 }

@@ -88,7 +88,7 @@ fn hear(job: &Job, end: SimTime) -> Result<Heard, Refusal> {
 }
 
 /// A report with every field that a stream can have: limits are checked against it before anything is opened.
-fn shape(from: &Destination) -> HeardReport {
+pub(super) fn shape(from: &Destination) -> HeardReport {
     let sensor = |name: String| HeardSensor {
         name,
         rate_hz: Some(0.0),

@@ -46,6 +46,17 @@ pub fn speed(text: &str) -> Result<Speed, String> {
     }
 }
 
+/// `--runs`: how many, also as `1e6`.
+pub fn runs(text: &str) -> Result<u64, String> {
+    // Beyond 2^53 a float stands for several whole numbers.
+    const MOST: f64 = 9_007_199_254_740_992.0;
+    let whole = text.parse().ok().or_else(|| {
+        let value = text.parse::<f64>().ok()?;
+        ((1.0..=MOST).contains(&value) && value.fract() == 0.0).then_some(value as u64)
+    });
+    whole.filter(|runs| *runs > 0).ok_or_else(|| "write a whole number from 1 on, such as 1000 or 1e6".into())
+}
+
 /// `--rest`, `--settle`: a time, or `0`.
 pub fn from_zero(text: &str) -> Result<SimTime, String> {
     Ok(SimTime(wait(text)?.as_nanos() as i64))

@@ -243,6 +243,9 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
             }
         }
         Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
+        Event::Waiting { whom, left } => {
+            bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
+        }
         Event::Silent(name) => bar.line(&format!("waiting for the controller on {name} to speak")),
         Event::Still => {
             held = true;

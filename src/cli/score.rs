@@ -217,17 +217,26 @@ fn report(arguments: &Arguments, truth: &Truth, estimates: Vec<Scored>) -> Resul
     Ok(report)
 }
 
-/// Whether every limit is of a field that there will be: before anything is judged.
+/// An estimate with every field that there can be: limits are checked against it before anything is judged.
+pub(super) fn shape(name: &str) -> Scored {
+    Scored {
+        name: name.into(),
+        source: name.into(),
+        figures: Some(Figures::shape()),
+        unknown: None,
+        time_unit: "ns",
+        rows: Some(Rows::default()),
+        remarks: Vec::new(),
+        hints: Vec::new(),
+    }
+}
+
+/// Whether every limit is of a field that there will be.
 fn check_limits(limits: &[Limit], sources: &[Source]) -> Result<(), LimitError> {
-    let scored = |source: &Source| {
-        let (name, source) = (source.name.clone(), source.source.clone());
-        let figures = Some(Figures::shape());
-        let (rows, time_unit) = (Some(Rows::default()), "ns");
-        let (unknown, remarks, hints) = (None, Vec::new(), Vec::new());
-        serde_json::to_value(Scored { name, source, figures, unknown, time_unit, rows, remarks, hints })
-            .unwrap_or_default()
-    };
-    let estimates: Vec<Value> = sources.iter().map(scored).collect();
+    let estimates: Vec<Value> = sources
+        .iter()
+        .map(|source| serde_json::to_value(shape(&source.name)).unwrap_or_default())
+        .collect();
     let one = estimates.first().cloned().unwrap_or_default();
     let shape = serde_json::json!({ "estimates": estimates });
     limits.iter().try_for_each(|limit| match limit.check(&one) {

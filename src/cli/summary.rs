@@ -1,6 +1,7 @@
 //! The report of a run as a person reads it.
 
-use crate::report::{AttitudeReport, HeardReport, Report, number, table};
+use crate::cli::terminal::Stream;
+use crate::report::{AttitudeReport, HeardReport, Report, number};
 use crate::score::DelayKnown;
 use crate::session::Outcome;
 use crate::time::SimTime;
@@ -110,7 +111,7 @@ fn sensors(report: &Report) -> String {
         }
         row
     });
-    table(&heading, &rows.collect::<Vec<_>>())
+    Stream::Err.table(&heading, &rows.collect::<Vec<_>>())
 }
 
 fn links(report: &Report) -> String {
@@ -130,7 +131,7 @@ fn links(report: &Report) -> String {
             load,
         ]
     });
-    table(
+    Stream::Err.table(
         &[
             "link",
             "made",
@@ -246,5 +247,5 @@ fn heard_sensors(report: &HeardReport) -> String {
         row.extend(gathered.then(|| share(sensor.burst_share)));
         row
     });
-    table(&heading, &rows.collect::<Vec<_>>())
+    Stream::Err.table(&heading, &rows.collect::<Vec<_>>())
 }

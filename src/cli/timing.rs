@@ -6,6 +6,8 @@ mod ledger;
 mod reader;
 mod results;
 
+pub(super) use results::shape;
+
 use super::clash::{self, Besides};
 use super::progress::Bar;
 use super::run::{self, written_to_the_end};
@@ -73,7 +75,7 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
     let output = output(arguments, &plan)?;
     let limits = options::limits(&arguments.limit, &plan)?;
-    let mut report = results::shape(&plan, &output);
+    let mut report = shape(&plan, &output);
     let as_json = serde_json::to_value(&report)?;
     limits.iter().try_for_each(|limit| limit.check(&as_json))?;
     wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
@@ -188,6 +190,9 @@ fn measure(
                 let path = name.split_once('@').map_or(name, |(_, path)| path);
                 reader = Some(Reader::start(path.into(), arrivals));
             }
+        }
+        Event::Waiting { whom, left } => {
+            bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
         }
         Event::Ground(_) | Event::Silent(_) | Event::Still | Event::Started => {}
         Event::Progress(progress) => bar.live(&progress),

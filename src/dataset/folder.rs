@@ -37,12 +37,14 @@ pub enum Holds {
     Listen,
     /// The timing of a stream.
     Timing,
+    /// Manual pages.
+    Manual,
 }
 
 impl Holds {
     /// As the manifest spells it.
     pub const fn name(self) -> &'static str {
-        ["dataset", "score", "study", "listen", "timing"][self as usize]
+        ["dataset", "score", "study", "listen", "timing", "manual"][self as usize]
     }
 }
 

@@ -72,7 +72,15 @@ fn of(name: &str, input: OwnedFd) -> io::Result<Link> {
         FileType::Directory => return Err(io::ErrorKind::IsADirectory.into()),
         _ => {
             fcntl_setfl(&input, fcntl_getfl(&input)? | OFlags::NONBLOCK)?;
-            Source::Pty(Readable::new(Arc::new(input))?)
+            let input = Arc::new(input);
+            match Readable::new(input.clone()) {
+                Ok(input) => Source::Pty(input),
+                // What cannot be waited for is always ready, as /dev/null.
+                Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
+                    Source::Recording(Recording(File::from(input.try_clone()?)))
+                }
+                Err(error) => return Err(error),
+            }
         }
     };
     let receiver = Some(Receiver(source));

@@ -37,6 +37,15 @@ impl Kind {
         !matches!(self.sign, Sign::Any)
     }
 
+    /// Which values it takes, to be said behind its name: `, 0 or more`; nothing where it takes any.
+    pub const fn bounds(&self) -> &'static str {
+        match self.sign {
+            Sign::Any => "",
+            Sign::NonNegative => ", 0 or more",
+            Sign::Positive => ", above 0",
+        }
+    }
+
     /// A value as one would write it: `20 deg/s`.
     pub const fn example(&self) -> &'static str {
         self.example

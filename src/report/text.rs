@@ -1,4 +1,4 @@
-//! Plain tables for people.
+//! Numbers and counts for people.
 
 /// A number with four significant digits (whole numbers below 10⁹ with all of theirs) and no useless zeros.
 pub fn number(value: f64) -> String {
@@ -13,27 +13,12 @@ pub fn number(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-/// Rows under a heading, columns aligned: those of numbers to the right, the others to the left.
-pub fn table(heading: &[&str], rows: &[Vec<String>]) -> String {
-    let width = |i: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count());
-        cells.chain(heading.get(i).map(|cell| cell.chars().count())).max().unwrap_or(0)
-    };
-    let widths: Vec<_> = (0..heading.len()).map(width).collect();
-    let is_number =
-        |cell: &String| cell == "-" || cell.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
-    let numbers = |i: usize| rows.iter().filter_map(|row| row.get(i)).all(is_number);
-    let right: Vec<_> = (0..heading.len()).map(numbers).collect();
-    let line = |cells: Vec<&str>| {
-        let padded = cells.iter().zip(&widths).zip(&right).map(|((cell, &width), right)| match right {
-            false => format!("{cell:<width$}"),
-            true => format!("{cell:>width$}"),
-        });
-        padded.collect::<Vec<_>>().join("  ").trim_end().to_string() + "\n"
-    };
-    let mut text = line(heading.to_vec());
-    rows.iter().for_each(|row| text += &line(row.iter().map(String::as_str).collect()));
-    text
+/// So many of something, in the plural unless it is one: `1 run`, `2 runs`.
+pub fn count(n: u64, what: &str) -> String {
+    match n {
+        1 => format!("1 {what}"),
+        n => format!("{n} {what}s"),
+    }
 }
 
 #[cfg(test)]
@@ -58,9 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_line_up() {
-        let text =
-            table(&["sensor", "Hz"], &[vec!["gyro".into(), "1000".into()], vec!["mag".into(), "100".into()]]);
-        assert_eq!(text, "sensor    Hz\ngyro    1000\nmag      100\n");
+    fn one_of_something_is_no_plural() {
+        assert_eq!([0, 1, 2].map(|n| count(n, "run")), ["0 runs", "1 run", "2 runs"]);
     }
 }

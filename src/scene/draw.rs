@@ -18,6 +18,44 @@ pub struct Drawn {
     pub key: String,
     /// What was drawn, as a scene would write it.
     pub value: String,
+    /// The same for a person: a number, or one an axis, in `unit`.
+    #[serde(skip)]
+    pub numbers: Vec<f64>,
+    /// The unit in which the scene or the part's file gives the distribution.
+    #[serde(skip)]
+    pub unit: String,
+}
+
+impl Drawn {
+    /// In the unit of `written`, the end of a distribution as written; in the first of `kind` where that has no size of
+    /// its own, as °C.
+    fn new(key: String, value: String, values: &[f64], kind: Kind, written: Option<&str>) -> Drawn {
+        let unit = written.map(unit_of).filter(|unit| !unit.is_empty());
+        let sized = unit.and_then(|unit| Some((unit, kind.unit(unit).ok()?.to_f64())));
+        let (unit, size) = sized.unwrap_or((kind.units()[0], 1.0));
+        let numbers = values.iter().map(|value| value / size).collect();
+        Drawn { key, value, numbers, unit: unit.to_string() }
+    }
+}
+
+/// What stands behind the number or vector of a quantity.
+fn unit_of(text: &str) -> &str {
+    if let Some((_, unit)) = text.rsplit_once(']') {
+        return unit.trim();
+    }
+    let ends = text.char_indices().map(|(i, _)| i).chain([text.len()]).rev();
+    let is_number = |at: &usize| text[..*at].trim().parse::<f64>().is_ok();
+    ends.into_iter().find(is_number).map_or("", |at| text[at..].trim())
+}
+
+/// The first text in a value: a quantity as it is written, or the first end of a distribution.
+fn first_text(value: &Value) -> Option<&str> {
+    match value {
+        Value::Text(text) => Some(text),
+        Value::Array(nodes) => nodes.iter().find_map(|node| first_text(&node.value)),
+        Value::Table(table) => table.entries.iter().find_map(|entry| first_text(&entry.node.value)),
+        _ => None,
+    }
 }
 
 impl Section<'_> {
@@ -44,10 +82,10 @@ impl Section<'_> {
         let unit = kind.units()[0];
         let text =
             if scalar { quantity::text_scalar(drawn[0], unit) } else { quantity::text_vector(drawn, unit) };
-        self.reader
-            .draws
-            .borrow_mut()
-            .push(Drawn { key: format!("{}.{}", self.path, key.name), value: text.clone() });
+        let written = table.entries.iter().find_map(|entry| first_text(&entry.node.value));
+        let values = if scalar { &drawn[..1] } else { &drawn[..] };
+        let path = format!("{}.{}", self.path, key.name);
+        self.reader.draws.borrow_mut().push(Drawn::new(path, text.clone(), values, kind, written));
         self.resolve(key.name, text);
         let sign = self.reader.axes.get().body_sign();
         Some(match key.takes {
@@ -64,17 +102,19 @@ impl Section<'_> {
         let context = plan.context(self.seed());
         let Some(bias) = sensor::settle_bias(&mut plan.values, &context) else { return };
         let unit = plan.kind.unit();
-        let text = match plan.kind {
-            SensorKind::Baro => quantity::text_scalar(bias.x, unit),
-            SensorKind::Gps => {
-                quantity::text_vector(self.axes().nav_out(Vector::from_vec(bias)).to_array(), unit)
-            }
-            _ => quantity::text_vector(self.axes().body_out(Vector::from_vec(bias)).to_array(), unit),
+        let values = match plan.kind {
+            SensorKind::Baro => vec![bias.x],
+            SensorKind::Gps => self.axes().nav_out(Vector::from_vec(bias)).to_array().to_vec(),
+            _ => self.axes().body_out(Vector::from_vec(bias)).to_array().to_vec(),
         };
-        self.reader
-            .draws
-            .borrow_mut()
-            .push(Drawn { key: format!("{}.bias", self.path), value: text.clone() });
+        let text = match values[..] {
+            [x, y, z] => quantity::text_vector([x, y, z], unit),
+            _ => quantity::text_scalar(bias.x, unit),
+        };
+        let written =
+            ["bias_std", "bias"].into_iter().find_map(|key| first_text(&self.entry(key)?.node.value));
+        let (path, kind) = (format!("{}.bias", self.path), plan.kind.units().reading);
+        self.reader.draws.borrow_mut().push(Drawn::new(path, text.clone(), &values, kind, written));
         self.resolve("bias", text);
         self.resolve("bias_std", format!("0 {}", plan.kind.unit()));
     }

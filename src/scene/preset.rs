@@ -49,15 +49,15 @@ pub(super) fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'stat
     });
     let named = named_filter(section, settings, wanted);
     if let Some(wanted) = wanted {
-        check_rate(section, part, kind, settings, &named, wanted);
+        check_rate(section, part.called(&name, kind), kind, settings, &named, wanted);
     }
-    Some(part.names[0])
+    Some(part.called(&name, kind))
 }
 
 /// A rate that the part has not, or not with this filter, is told and played.
 fn check_rate(
     section: &Section<'_>,
-    part: &parts::Part,
+    part: &str,
     kind: SensorKind,
     settings: &Settings,
     named: &[Filter],
@@ -72,9 +72,8 @@ fn check_rate(
     let near = if nearest.len() == 1 { "nearest is" } else { "nearest are" };
     let with = named.first().map_or(String::new(), |filter| format!(" with its filter `{}`", filter.name));
     section.reader.warn(format!(
-        "{}: the {} outputs no {kind} samples at {wanted}{with}: the {near} {}; it is played at {wanted} all the same",
+        "{}: the {part} outputs no {kind} samples at {wanted}{with}: the {near} {}; it is played at {wanted} all the same",
         section.place("rate"),
-        part.names[0],
         nearest.join(" and ")
     ));
 }

@@ -37,6 +37,17 @@ pub struct SweptValue {
     pub value: String,
 }
 
+/// What a key of `[sweep]` takes from run to run, as written.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct SweptKey {
+    /// Such as `gyro.noise_std`.
+    pub key: String,
+    /// Each value of a list in turn, or the two ends between which each run draws its own.
+    pub values: Vec<String>,
+    /// Whether it is drawn.
+    pub drawn: bool,
+}
+
 /// A scene of which many runs are made: run i is the scene with a seed of its own, derived from the scene's seed and
 /// i, and with its share of what `[sweep]` says. It depends on nothing else, so that runs may be made in any order,
 /// anywhere.
@@ -83,6 +94,15 @@ impl Runs {
     /// The keys that differ, in the order written.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.swept.iter().map(|swept| &swept.key[..])
+    }
+
+    /// What each key takes, in the order written.
+    pub fn swept(&self) -> impl Iterator<Item = SweptKey> {
+        self.swept.iter().map(|swept| SweptKey {
+            key: swept.key.clone(),
+            values: swept.ends().iter().map(|node| text(&node.value)).collect(),
+            drawn: matches!(swept.takes, Takes::Uniform { .. }),
+        })
     }
 
     /// How many combinations the lists have; 1 without any.

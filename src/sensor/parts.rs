@@ -101,6 +101,14 @@ pub fn find(name: &str, sensor: SensorKind) -> Option<&'static Part> {
     PARTS.iter().find(|part| part.names.iter().any(|known| is(known)) || inside(part))
 }
 
+impl Part {
+    /// What a sensor of this kind is called whose user asked for `name`: a chip inside by its own name, else the part.
+    pub fn called(&self, name: &str, sensor: SensorKind) -> &'static str {
+        let mut inside = self.inside.iter().filter(|(_, kind)| *kind == sensor);
+        inside.find(|(known, _)| known.eq_ignore_ascii_case(name)).map_or(self.names[0], |(known, _)| known)
+    }
+}
+
 /// Every name by which a sensor of this kind may ask for a part.
 pub fn names(sensor: SensorKind) -> impl Iterator<Item = &'static str> {
     let inside = move |part: &'static Part| part.inside.iter().filter(move |(_, kind)| *kind == sensor);

@@ -155,7 +155,7 @@ impl Run {
         if !run.job.command.is_empty() {
             program.0 = Some(command::start(&run.job.command, &names[0], run.job.keep_stdout)?);
         }
-        let mut here = run.wait_for_peers(&mut links, &mut signals, &mut program).await;
+        let mut here = run.wait_for_peers(on, &mut links, &mut signals, &mut program).await;
         if matches!(here, Ok(true)) {
             run.listen(&mut links);
             here = run.wait_to_be_heard(on, &names, &mut signals, &mut program).await;

@@ -4,8 +4,13 @@ use super::control::{Program, Run, TICK};
 use super::{Event, SessionError};
 use crate::clock::Clock;
 use crate::interrupt::Interrupt;
-use crate::link::Link;
-use tokio::time::Instant;
+use crate::link::{Address, Link};
+use std::pin::pin;
+use std::time::Duration;
+use tokio::time::{Instant, sleep, timeout_at};
+
+/// Who comes within this is not told to be waited for: a command or a demonstration opens its link by itself.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// What ended a wait.
 enum Woke<T> {
@@ -14,10 +19,20 @@ enum Woke<T> {
     CommandEnded,
 }
 
+/// Who has to come to a link.
+fn whom(address: &Address, name: &str) -> String {
+    match address {
+        Address::TcpIn(_) => format!("somebody to connect to {name}"),
+        Address::UdpIn(_) => format!("somebody to send to {name}"),
+        _ => format!("a reader to open {name}"),
+    }
+}
+
 impl Run {
     /// True when somebody is on every link; false when the user or the command ended the wait.
     pub(super) async fn wait_for_peers(
         &mut self,
+        on: &mut dyn FnMut(Event<'_>),
         links: &mut [Link],
         signals: &mut Interrupt,
         program: &mut Program,
@@ -27,14 +42,24 @@ impl Run {
         }
         let waited = self.job.wait;
         let deadline = Instant::now() + waited;
-        for link in links {
+        for (i, link) in links.iter_mut().enumerate() {
             let name = link.name().to_string();
-            let woke = tokio::select! {
-                peer = tokio::time::timeout_at(deadline, link.peer()) => Woke::Done(peer),
-                () = signals.recv() => Woke::Interrupted,
-                code = program.ended() => {
-                    self.ended = Some(code);
-                    Woke::CommandEnded
+            let whom = whom(&self.job.outputs[i].to.address, &name);
+            let mut peer = pin!(timeout_at(deadline, link.peer()));
+            let mut patience = pin!(sleep(PATIENCE));
+            let mut told = false;
+            let woke = loop {
+                tokio::select! {
+                    peer = &mut peer => break Woke::Done(peer),
+                    () = signals.recv() => break Woke::Interrupted,
+                    code = program.ended() => {
+                        self.ended = Some(code);
+                        break Woke::CommandEnded;
+                    }
+                    () = &mut patience, if !told => {
+                        told = true;
+                        on(Event::Waiting { whom: whom.clone(), left: deadline - Instant::now() });
+                    }
                 }
             };
             match woke {

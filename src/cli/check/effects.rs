@@ -1,8 +1,9 @@
 //! The table of effects for a person: what the scene models, and what it leaves out.
 
 use super::{noise, shown};
+use crate::cli::terminal::Stream;
 use crate::effects::{Effect, TICKS, Verdict, effects};
-use crate::report::{number, table};
+use crate::report::number;
 use crate::scene::Plan;
 use crate::sensor::{SensorPlan, lsb};
 
@@ -17,7 +18,8 @@ pub(super) fn text(plan: &Plan) -> String {
             row[0] = sensor.kind.to_string();
         }
     }
-    let mut text = table(&["sensor", "effect", "size", "which is", "verdict", "key or note"], &rows);
+    let mut text =
+        Stream::Out.table(&["sensor", "effect", "size", "which is", "verdict", "key or note"], &rows);
     text += "\n";
     plan.sensors.iter().for_each(|sensor| text += &shows(sensor));
     text += "An effect is seen where it is at least half a count and a tenth of one sample's white noise. A slow one may be\n\

@@ -1,15 +1,15 @@
 //! The plan for a program.
 
-use super::{budgets, noise, terms, warnings};
+use super::{Checked, budgets, drawn, noise, terms, warnings};
 use crate::dataset::Bounds;
 use crate::earth;
 use crate::effects::effects;
-use crate::motion::method::Choice;
-use crate::scene::{Plan, Reference};
+use crate::scene::{Plan, SweptKey};
 use crate::sensor::{Sampling, lsb};
 use serde_json::{Value, json};
 
-pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>) -> Value {
+pub(super) fn json(checked: &Checked<'_>) -> Value {
+    let Checked { plan, runs, reference } = *checked;
     let sensors = plan.sensors.iter().map(|sensor| {
         let noise = noise(sensor);
         json!({
@@ -75,7 +75,11 @@ pub(super) fn json(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
         "links": links.collect::<Vec<_>>(),
         "faults": plan.faults(),
         "limits": plan.limits.iter().map(|(limit, _)| limit).collect::<Vec<_>>(),
-        "drawn": plan.drawn,
+        "drawn": drawn(plan),
+        "sweep": {
+            "combinations": runs.combinations(),
+            "keys": runs.swept().collect::<Vec<SweptKey>>(),
+        },
         "warnings": warnings(plan),
     })
 }

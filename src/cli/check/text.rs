@@ -1,15 +1,16 @@
 //! The plan for a person.
 
 use super::effects;
-use super::{Noise, budgets, noise, shown, terms, warnings};
+use super::{Checked, Noise, budgets, drawn, noise, shown, terms, warnings};
+use crate::cli::terminal::Stream;
 use crate::earth;
-use crate::motion::method::Choice;
-use crate::report::{number, table};
-use crate::scene::{Plan, Reference};
+use crate::report::{count, number};
+use crate::scene::{Drawn, Plan, Runs};
 use crate::sensor::{Claims, Sampling, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
 
-pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>) -> String {
+pub(super) fn text(checked: &Checked<'_>) -> String {
+    let Checked { plan, runs, reference } = *checked;
     let mut text = heading(plan);
     if let Some((reference, choice)) = reference {
         let (from, method, rate) = (reference.from(), reference.method(), reference.rate());
@@ -17,6 +18,7 @@ pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
         text += &choice.map_or(String::new(), |choice| format!("chosen: {choice}\n"));
     }
     text += &position(plan);
+    text += &sweep(runs);
     text += &format!("\n{}", sensors(plan));
     text += "\nOne-sided density (datasheets) = √2 · random walk (Allan deviation at 1 s; Kalibr's noise density).\n";
     text += &format!("\n{}", effects::text(plan));
@@ -29,11 +31,36 @@ pub(super) fn text(plan: &Plan, reference: Option<&(Reference, Option<Choice>)>)
     for (limit, _) in &plan.limits {
         text += &format!("limit: {limit}\n");
     }
-    for drawn in &plan.drawn {
-        text += &format!("drawn: {} = {}\n", drawn.key, drawn.value);
+    for drawn in drawn(plan) {
+        text += &format!("drawn: {} = {}\n", drawn.key, in_its_unit(drawn));
     }
     for warning in warnings(plan) {
         text += &format!("warning: {warning}\n");
+    }
+    Stream::Out.fold(&text)
+}
+
+/// As the scene writes it, shortened: `[0.1339, 0.113, 0.05751] deg/s`.
+fn in_its_unit(drawn: &Drawn) -> String {
+    let numbers: Vec<_> = drawn.numbers.iter().map(|value| number(*value)).collect();
+    match numbers.as_slice() {
+        [one] => format!("{one} {}", drawn.unit),
+        several => format!("[{}] {}", several.join(", "), drawn.unit),
+    }
+}
+
+/// What differs from run to run.
+fn sweep(runs: &Runs) -> String {
+    if runs.keys().next().is_none() {
+        return String::new();
+    }
+    let combinations = count(runs.combinations(), "combination");
+    let mut text = format!("sweep: {combinations} for `generate`; what follows is the scene without it\n");
+    for swept in runs.swept() {
+        text += &match (swept.drawn, swept.values.as_slice()) {
+            (true, [low, high]) => format!("  {}: from {low} to {high}, drawn for each run\n", swept.key),
+            (_, values) => format!("  {}: {}\n", swept.key, values.join(", ")),
+        };
     }
     text
 }
@@ -107,7 +134,7 @@ fn sensors(plan: &Plan) -> String {
         "count",
         "terms evaluated",
     ];
-    let table = table(&heading, &rows.collect::<Vec<_>>());
+    let table = Stream::Out.table(&heading, &rows.collect::<Vec<_>>());
     plan.sensors.iter().fold(table, |text, sensor| text + &manner(sensor))
 }
 
@@ -147,5 +174,5 @@ fn outputs(plan: &Plan) -> String {
         let share = budget.share().map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
         vec![budget.to.to_string(), number(budget.packets_per_s), number(budget.bytes_per_s), share]
     });
-    table(&["output", "packets/s", "bytes/s", "of baud rate"], &rows.collect::<Vec<_>>())
+    Stream::Out.table(&["output", "packets/s", "bytes/s", "of baud rate"], &rows.collect::<Vec<_>>())
 }

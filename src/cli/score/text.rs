@@ -1,19 +1,20 @@
 //! The comparison as a person reads it.
 
-use crate::report::{ScoreReport, Scored, number, table};
+use crate::cli::terminal::Stream;
+use crate::report::{ScoreReport, Scored, number};
 use crate::score::{DelayKnown, Errors, Figures};
 
 pub(super) fn report(report: &ScoreReport) -> String {
     let judged = || report.estimates.iter().filter_map(|scored| Some((scored, scored.figures.as_ref()?)));
     let mut text = String::new();
     if judged().next().is_some() {
-        text += &table(
+        text += &Stream::Err.table(
             &HEADING,
             &judged().flat_map(|(scored, figures)| rows(scored, figures)).collect::<Vec<_>>(),
         );
         let angles = ["estimate", "roll RMS deg", "max", "pitch RMS deg", "max", "yaw RMS deg", "max"];
         text += "\n";
-        text += &table(
+        text += &Stream::Err.table(
             &angles,
             &judged().map(|(scored, figures)| angles_of(scored, figures)).collect::<Vec<_>>(),
         );

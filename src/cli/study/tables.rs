@@ -1,7 +1,8 @@
 //! The studies as a person reads them.
 
+use crate::cli::terminal::Stream;
 use crate::motion::method::{Input, METHODS, find};
-use crate::report::{number, table};
+use crate::report::number;
 use crate::study::accuracy;
 use crate::study::allan;
 use crate::study::cost::Cost;
@@ -46,7 +47,7 @@ fn errors(rows: &[&accuracy::Row], cases: &[Case]) -> String {
         let cells = names.iter().map(cell);
         lines.push([method].into_iter().chain(cells).chain([format!("{cost:.0}")]).collect());
     }
-    table(&heading, &lines)
+    Stream::Out.table(&heading, &lines)
 }
 
 /// Two lines a motion: from samples of rate, and from increments, which not every part gives.
@@ -62,7 +63,7 @@ fn cheapest(rows: &[accuracy::Row], cases: &[Case]) -> String {
             lines.push([case.name.clone(), from.to_string()].into_iter().chain(cells).collect());
         }
     }
-    table(&heading, &lines)
+    Stream::Out.table(&heading, &lines)
 }
 
 fn best(tried: &[&accuracy::Row], tolerance: f64) -> String {
@@ -116,7 +117,10 @@ pub fn stability(rows: &[stability::Row]) -> String {
         .zip(&numbers)
         .map(|(case, n)| format!("{n:>2} {}: {}\n", case.name, case.about))
         .collect();
-    format!("where methods fail: . stable, ~ degraded, X fails\n{}\n{about}", table(&heading, &lines))
+    format!(
+        "where methods fail: . stable, ~ degraded, X fails\n{}\n{about}",
+        Stream::Out.table(&heading, &lines)
+    )
 }
 
 fn sign(verdict: Verdict) -> &'static str {
@@ -144,7 +148,7 @@ pub fn cost(cost: &Cost) -> String {
     });
     format!(
         "{}\n{} million nine-axis samples/s of {}, one thread{floor}\n{cores}",
-        table(&["with", "ns more", "ns a sample"], &rows.collect::<Vec<_>>()),
+        Stream::Out.table(&["with", "ns more", "ns a sample"], &rows.collect::<Vec<_>>()),
         millions(cost.nine_axis_samples_per_s),
         cost.scene,
     )
@@ -170,6 +174,7 @@ pub fn allan(points: &[allan::Point]) -> String {
         let cells = TAUS.iter().map(|&tau| cell(sensor, tau));
         [sensor.to_string(), allan::unit(sensor).to_string()].into_iter().chain(cells).collect()
     });
-    let text = table(&["sensor", "unit", "about 0.1 s", "1 s", "10 s", "100 s"], &rows.collect::<Vec<_>>());
+    let text = Stream::Out
+        .table(&["sensor", "unit", "about 0.1 s", "1 s", "10 s", "100 s"], &rows.collect::<Vec<_>>());
     format!("Allan deviation, and by theory\n{text}")
 }

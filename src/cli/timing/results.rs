@@ -2,7 +2,8 @@
 
 use super::run::{self, Ended};
 use super::{Measured, Refusal};
-use crate::report::{Baseline, Late, Limit, SensorReport, SensorTiming, Spread, TimingReport, number, table};
+use crate::cli::terminal::Stream;
+use crate::report::{Baseline, Late, Limit, SensorReport, SensorTiming, Spread, TimingReport, number};
 use crate::scene::{Output, Plan};
 use crate::session::Speed;
 use std::slice::from_ref;
@@ -136,7 +137,7 @@ fn sensors(report: &TimingReport) -> String {
         "missed",
         "overdue",
     ];
-    table(&heading, &report.run.sensors.iter().map(row).collect::<Vec<_>>()) + "\n"
+    Stream::Err.table(&heading, &report.run.sensors.iter().map(row).collect::<Vec<_>>()) + "\n"
 }
 
 fn lateness(report: &TimingReport) -> String {
@@ -162,7 +163,7 @@ fn lateness(report: &TimingReport) -> String {
     let bare = cells(report.baseline.late_us.map(late));
     rows.push([vec!["bare timer".to_string()], bare.into(), ["-"; 3].map(String::from).into()].concat());
     let heading = ["late µs", "p50", "p99", "p99.9", "max", "interval std", "transit p50", "p99"];
-    table(&heading, &rows)
+    Stream::Err.table(&heading, &rows)
 }
 
 fn ratio(report: &TimingReport) -> String {
