@@ -233,10 +233,8 @@ pub(super) fn shape(name: &str) -> Scored {
 
 /// Whether every limit is of a field that there will be.
 fn check_limits(limits: &[Limit], sources: &[Source]) -> Result<(), LimitError> {
-    let estimates: Vec<Value> = sources
-        .iter()
-        .map(|source| serde_json::to_value(shape(&source.name)).unwrap_or_default())
-        .collect();
+    let estimates: Vec<Value> =
+        sources.iter().map(|source| serde_json::to_value(shape(&source.name)).unwrap_or_default()).collect();
     let one = estimates.first().cloned().unwrap_or_default();
     let shape = serde_json::json!({ "estimates": estimates });
     limits.iter().try_for_each(|limit| match limit.check(&one) {

@@ -1,6 +1,6 @@
 //! `ratetable completions` and `ratetable man`: what shells and `man` want of the command line, out of its definition.
 
-use super::{Refusal, Verdict, say};
+use super::{Refusal, Verdict, say, tell};
 use crate::dataset::{self, Holds};
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
@@ -24,7 +24,7 @@ pub struct ManArguments {
 pub fn completions(arguments: &CompletionsArguments) -> Result<Verdict, Refusal> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut super::Arguments::command(), NAME, &mut script);
-    say(&String::from_utf8_lossy(&script));
+    say(&String::from_utf8_lossy(&script))?;
     Ok(Verdict::Fine)
 }
 
@@ -32,7 +32,7 @@ pub fn man(arguments: &ManArguments) -> Result<Verdict, Refusal> {
     let mut program = super::Arguments::command();
     program.build();
     let Some(dir) = &arguments.out else {
-        say(&String::from_utf8_lossy(&page(program)?));
+        say(&String::from_utf8_lossy(&page(program)?))?;
         return Ok(Verdict::Fine);
     };
     let mut files = Vec::new();
@@ -43,7 +43,7 @@ pub fn man(arguments: &ManArguments) -> Result<Verdict, Refusal> {
     files.push((format!("{NAME}.1"), page(program)?));
     let files: Vec<_> = files.iter().map(|(name, page)| (name.as_str(), page.clone())).collect();
     dataset::put_all(dir, false, Holds::Manual, &files)?;
-    eprintln!("{}: {} pages", dir.display(), files.len());
+    tell(&format!("{}: {} pages", dir.display(), files.len()));
     Ok(Verdict::Fine)
 }
 

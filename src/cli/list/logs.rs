@@ -6,13 +6,13 @@ use super::List;
 const LOGS: [[&str; 4]; 6] = [
     [
         "dataset",
-        "a folder with a manifest.json",
+        "a folder with a manifest.json, in any format of `list formats`",
         "readings and exact truth, as `generate` and `run --out` write it",
         "score: the truth, and what filters run on",
     ],
     [
         "table",
-        "text, a line of column names first",
+        "text, a line of column names first, plain or a comment (EuRoC, TUM-VI, ulog2csv)",
         "a time and a quaternion, Euler angles or angular rates, found by their names or named by the scene",
         "score; replay, whose `file` it is",
     ],
@@ -20,7 +20,7 @@ const LOGS: [[&str; 4]; 6] = [
         "tum",
         "eight numbers a line: t x y z qx qy qz qw",
         "a trajectory as evo and SLAM tools write it",
-        "score",
+        "score; replay, whose `file` it is",
     ],
     ["ulog", "begins with the bytes `ULog`", "a PX4 log: the topic vehicle_attitude", "score"],
     [

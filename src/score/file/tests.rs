@@ -1,7 +1,9 @@
 //! What was written is read back; what is wrong is told with its place.
 
 use super::*;
-use crate::geometry::Euler;
+use crate::geometry::{Attitude, Euler};
+use crate::score::{Stamp, Timed};
+use crate::time::SimTime;
 
 fn attitude(k: i64) -> Attitude {
     let k = k as f64;

@@ -153,7 +153,10 @@ fn in_real_time_who_stamps_on_arrival_is_off_by_what_arrives_unevenly_and_no_mor
         if case.make == Make::Px4 {
             // A wrong axis or sign of its answers would be tens of degrees; a delay that is not told, tenths.
             let told = outcome.attitude.expect("answers");
-            assert!(told.samples > 100 && told.rms_deg < 2.0 + bound && told.looks.is_none(), "{told:?}");
+            assert!(
+                told.samples > 100 && told.errors.rms_deg < 2.0 + bound && told.looks.is_none(),
+                "{told:?}"
+            );
         }
         assert!(rms < bound, "{}: {rms} deg, and {uneven_s} s uneven allow {bound}", case.make);
     }
@@ -168,6 +171,6 @@ fn in_real_time_inav_at_rest_is_told_level() {
     let (outcome, record, _) = play(case, &plan, Speed::Times(10.0));
     let told = outcome.attitude.expect("answers");
     eprintln!("inav ten times as fast: {told:?}; {}", record.counts);
-    assert!(told.inclination_rms_deg < 0.3 && told.heading_rms_deg < 1.0, "{told:?}");
+    assert!(told.errors.inclination_rms_deg < 0.3 && told.errors.heading_rms_deg < 1.0, "{told:?}");
     assert!(outcome.rest_s >= 20.0 && record.counts.samples > 0);
 }
