@@ -12,6 +12,7 @@ mod vqf;
 use crate::geometry::{Attitude, Body, Rotation, Vector, exp};
 use crate::time::SimTime;
 use glam::{DMat3, DQuat, DVec3};
+use std::collections::VecDeque;
 
 /// A filter that is told of each reading as it comes; several of one instant in the order gyro, accelerometer,
 /// magnetometer.
@@ -79,6 +80,29 @@ pub struct Readings {
     pub mag: Column,
 }
 
+/// One sensor's readings as they come, in order of time.
+pub type Stream<'a> = Box<dyn Iterator<Item = (SimTime, Vector<Body>)> + 'a>;
+
+/// The readings of a dataset as they come: an hour of them need not be in memory.
+pub struct Streams<'a> {
+    /// rad/s.
+    pub gyro: Stream<'a>,
+    /// m/s².
+    pub accel: Stream<'a>,
+    /// µT.
+    pub mag: Stream<'a>,
+}
+
+impl Readings {
+    /// As they come.
+    pub fn streams(&self) -> Streams<'_> {
+        fn of(column: &Column) -> Stream<'_> {
+            Box::new(column.iter().copied())
+        }
+        Streams { gyro: of(&self.gyro), accel: of(&self.accel), mag: of(&self.mag) }
+    }
+}
+
 /// Runs a filter over readings: the attitude after each instant at which the gyro was read, from true north if the
 /// magnetometer is used (`declination`, rad, positive where the field points east of it), else from where it starts.
 pub fn run(
@@ -87,50 +111,95 @@ pub fn run(
     with_mag: bool,
     declination: f64,
 ) -> Vec<(SimTime, Attitude)> {
-    let Readings { gyro, accel, mag } = readings;
-    let mag: &[_] = if with_mag { mag } else { &[] };
-    let (Some((_, force)), Some(&(first, _))) = (accel.first(), gyro.first()) else { return Vec::new() };
-    let setup = Setup {
-        gyro_s: period(gyro),
-        accel_s: period(accel),
-        mag_s: period(mag),
-        has_mag: !mag.is_empty(),
-        start: start(*force, mag.first().map(|(_, field)| *field)),
-    };
-    let north = if mag.is_empty() { DQuat::IDENTITY } else { exp(DVec3::Z * declination) };
-    let mut filter = (kind.build)(&setup);
-    let (mut last, mut next_accel, mut next_mag) = (first, 0, 0);
-    let mut attitudes = Vec::with_capacity(gyro.len());
-    for (i, &(t, rate)) in gyro.iter().enumerate() {
-        filter.gyro((t - last).seconds(), rate);
-        last = t;
-        let end = gyro.get(i + 1).map_or(SimTime(t.0 + 1), |(next, _)| *next);
-        let at_once = |next: &mut usize, from: &[(SimTime, Vector<Body>)], end: SimTime| {
-            let found = from.get(*next).filter(|(t, _)| *t < end).map(|(_, v)| *v);
-            *next += usize::from(found.is_some());
-            found
-        };
-        // What is due with the gyro counts for this attitude, what comes before its next reading for the next.
-        for until in [SimTime(t.0 + 1), end] {
-            while let Some(force) = at_once(&mut next_accel, accel, until) {
-                filter.accel(force);
-            }
-            while let Some(field) = at_once(&mut next_mag, mag, until) {
-                filter.mag(field);
-            }
-            if attitudes.len() == i {
-                attitudes.push((t, Attitude::from_quat(north * filter.attitude().q)));
-            }
-        }
-    }
+    let mut attitudes = Vec::with_capacity(readings.gyro.len());
+    run_as_read(kind, readings.streams(), with_mag, declination, |t, attitude| attitudes.push((t, attitude)));
     attitudes
 }
 
-/// The nominal interval: the median.
-fn period(readings: &[(SimTime, Vector<Body>)]) -> f64 {
-    let mut steps: Vec<i64> = readings.windows(2).map(|pair| (pair[1].0 - pair[0].0).0).collect();
-    steps.sort_unstable();
-    steps.get(steps.len() / 2).map_or(0.01, |&ns| ns as f64 * 1e-9)
+/// [`run`] for readings that are read meanwhile: `each` is told every attitude.
+pub fn run_as_read(
+    kind: &FilterKind,
+    streams: Streams<'_>,
+    with_mag: bool,
+    declination: f64,
+    mut each: impl FnMut(SimTime, Attitude),
+) {
+    let none: Stream<'_> = Box::new(std::iter::empty());
+    let mag = if with_mag { streams.mag } else { none };
+    let [mut gyro, mut accel, mut mag] =
+        [Ahead::new(streams.gyro), Ahead::new(streams.accel), Ahead::new(mag)];
+    let (Some((_, force)), Some((first, _))) = (accel.peek(), gyro.peek()) else { return };
+    let has_mag = mag.peek().is_some();
+    let setup = Setup {
+        gyro_s: gyro.period(),
+        accel_s: accel.period(),
+        mag_s: mag.period(),
+        has_mag,
+        start: start(force, mag.peek().map(|(_, field)| field)),
+    };
+    let north = if has_mag { exp(DVec3::Z * declination) } else { DQuat::IDENTITY };
+    let mut filter = (kind.build)(&setup);
+    let mut last = first;
+    while let Some((t, rate)) = gyro.next() {
+        filter.gyro((t - last).seconds(), rate);
+        last = t;
+        let end = gyro.peek().map_or(SimTime(t.0 + 1), |(next, _)| next);
+        let mut told = false;
+        // What is due with the gyro counts for this attitude, what comes before its next reading for the next.
+        for until in [SimTime(t.0 + 1), end] {
+            while let Some((_, force)) = accel.before(until) {
+                filter.accel(force);
+            }
+            while let Some((_, field)) = mag.before(until) {
+                filter.mag(field);
+            }
+            if !std::mem::replace(&mut told, true) {
+                each(t, Attitude::from_quat(north * filter.attitude().q));
+            }
+        }
+    }
+}
+
+/// As many steps tell the nominal interval.
+const STEPS: usize = 10_000;
+
+/// Readings with those that come next at hand.
+struct Ahead<'a> {
+    held: VecDeque<(SimTime, Vector<Body>)>,
+    rest: Stream<'a>,
+}
+
+impl<'a> Ahead<'a> {
+    fn new(mut readings: Stream<'a>) -> Ahead<'a> {
+        let held = readings.by_ref().take(STEPS).collect();
+        Ahead { held, rest: readings }
+    }
+
+    /// The nominal interval: the median of those at hand, s.
+    fn period(&self) -> f64 {
+        let steps = self.held.iter().zip(self.held.iter().skip(1)).map(|(a, b)| (b.0 - a.0).0);
+        let mut steps: Vec<i64> = steps.collect();
+        steps.sort_unstable();
+        steps.get(steps.len() / 2).map_or(0.01, |&ns| ns as f64 * 1e-9)
+    }
+
+    fn peek(&mut self) -> Option<(SimTime, Vector<Body>)> {
+        if self.held.is_empty() {
+            self.held.extend(self.rest.next());
+        }
+        self.held.front().copied()
+    }
+
+    /// The next one if it is before `until`.
+    fn before(&mut self, until: SimTime) -> Option<(SimTime, Vector<Body>)> {
+        self.peek().filter(|(t, _)| *t < until)?;
+        self.held.pop_front()
+    }
+
+    fn next(&mut self) -> Option<(SimTime, Vector<Body>)> {
+        self.peek()?;
+        self.held.pop_front()
+    }
 }
 
 /// The attitude at rest that specific force and field show (TRIAD; H. Black, AIAA Journal 2(7), 1964); without a

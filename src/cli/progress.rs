@@ -26,6 +26,20 @@ impl Bar {
         Bar(ProgressBar::with_draw_target(length, target).with_style(style))
     }
 
+    /// Of steps of which nobody knows how long they take.
+    pub fn of_steps() -> Bar {
+        let bar = Bar::new(SimTime::FOREVER);
+        let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})");
+        bar.0.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        bar.0.enable_steady_tick(Duration::from_millis(100));
+        bar
+    }
+
+    /// The step at hand.
+    pub fn step(&self, what: String) {
+        self.0.set_message(what);
+    }
+
     /// Of a count of jobs, whose number is told with the first that is done.
     pub fn of_jobs(name: &'static str) -> Bar {
         let bar = Bar::new(SimTime(MILLIS));

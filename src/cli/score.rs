@@ -9,6 +9,7 @@ mod text;
 mod units;
 
 use super::options::{self, Alignment};
+use super::progress::Bar;
 use super::{Refusal, Verdict, say, tell};
 use crate::dataset::{self, Holds};
 use crate::geometry::Axes;
@@ -108,13 +109,16 @@ pub fn score(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(dir) = &arguments.out {
         dataset::may_write(dir, arguments.force, Holds::Score, &book::FILES.map(String::from))?;
     }
-    let (truth, sources) = sources::load(arguments)?;
+    let bar = Bar::of_steps();
+    let (truth, sources) = sources::load(arguments, &bar)?;
     check_limits(&arguments.limit, &sources)?;
     let mut book = arguments.out.as_ref().map(|dir| Book::open(dir, arguments.force)).transpose()?;
     let mut scored = Vec::new();
     for source in sources {
+        bar.step(format!("judges {}", source.name));
         scored.push(one(&truth, source, arguments, book.as_mut())?);
     }
+    bar.clear();
     let report = report(arguments, &truth, scored)?;
     tell(&text::report(&report));
     let json = serde_json::to_string_pretty(&report)? + "\n";

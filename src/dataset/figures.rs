@@ -33,7 +33,8 @@ pub struct Figure {
 pub struct Series {
     /// Such as `x`.
     pub label: &'static str,
-    /// Time in s and value in the figure's unit: every sample of a short scene, of a long one those that show.
+    /// Time in s and value in the figure's unit: every sample of a short scene, of a long one those that show. Where
+    /// samples are missing stands one that is no number.
     pub points: Vec<(f64, f64)>,
     /// Whether it is free of errors.
     pub is_truth: bool,
@@ -50,7 +51,12 @@ pub struct Figures {
     figures: Vec<Figure>,
     /// For each figure and line, the stretch at hand.
     stretches: Vec<Vec<Stretch>>,
+    /// For each figure, the longest step that is no gap, ns, and when its newest point was.
+    steps: Vec<(i64, Option<SimTime>)>,
 }
+
+/// Samples further apart than so many of their intervals leave a gap.
+const GAP: f64 = 2.5;
 
 impl Figures {
     /// Of a plan played from 0 up to `end`, with nothing in them yet.
@@ -59,7 +65,15 @@ impl Figures {
         figures.push(of_angles());
         let empty = |figure: &Figure| vec![Stretch::default(); figure.series.len()];
         let stretches = figures.iter().map(empty).collect();
-        Figures { axes: plan.axes, width: (end.0 / STRETCHES).max(1), figures, stretches }
+        let step = |hz: f64| ((GAP * 1e9 / hz) as i64, None);
+        let steps = plan.sensors.iter().map(|sensor| step(sensor.rate.as_hz())).chain([(i64::MAX, None)]);
+        Figures {
+            axes: plan.axes,
+            width: (end.0 / STRETCHES).max(1),
+            steps: steps.collect(),
+            figures,
+            stretches,
+        }
     }
 
     /// Takes in what is due at one time; times go forward.
@@ -83,11 +97,16 @@ impl Figures {
 
     fn put(&mut self, figure: usize, t: SimTime, values: &[f64], in_unit: fn(f64) -> f64) {
         let index = t.0 / self.width;
+        let (longest, newest) = &mut self.steps[figure];
+        let is_gap = newest.replace(t).is_some_and(|newest| (t - newest).0 > *longest);
         let lines = self.figures[figure].series.iter_mut().zip(&mut self.stretches[figure]);
         for ((series, stretch), value) in lines.zip(values) {
-            if stretch.index != index {
+            if stretch.index != index || is_gap {
                 stretch.flush(&mut series.points);
                 stretch.index = index;
+            }
+            if is_gap {
+                series.points.push((t.seconds(), f64::NAN));
             }
             stretch.add((t.seconds(), in_unit(*value)));
         }

@@ -56,31 +56,54 @@ pub fn truth(path: &Path) -> Result<Recorded, DatasetError> {
     Ok(Recorded { axes, attitudes })
 }
 
+/// For how long a run held the vehicle still before the scene, where the folder has its report.
+pub fn rest(folder: &Path) -> Option<SimTime> {
+    let report = std::fs::read(folder.join("report.json")).ok()?;
+    let report: serde_json::Value = serde_json::from_slice(&report).ok()?;
+    let seconds = report.get("rest_s")?.as_f64().filter(|rest| (0.0..1e6).contains(rest))?;
+    Some(SimTime((seconds * 1e9) as i64))
+}
+
 /// Whether a dataset's folder has a sensor's readings, in any format, or should have.
 pub fn has(folder: &Path, kind: SensorKind) -> bool {
     folder.join(format!("{kind}.csv")).exists() || other::lists(folder, kind)
 }
 
-/// Reads one sensor's readings of a dataset's folder, in whatever format it has them: time and value in body axes (Forward-Right-Down), in the
-/// sensor's unit.
+/// One sensor's readings as they are read; after a mistake nothing more comes.
+pub type AsRead = Box<dyn Iterator<Item = Result<(SimTime, Vector<Body>), DatasetError>>>;
+
+/// Reads one sensor's readings of a dataset's folder, in whatever format it has them: time and value in body axes
+/// (Forward-Right-Down), in the sensor's unit.
 ///
 /// # Errors
 /// As of [`truth`].
 pub fn readings(folder: &Path, kind: SensorKind) -> Result<Vec<(SimTime, Vector<Body>)>, DatasetError> {
+    as_read(folder, kind)?.collect()
+}
+
+/// [`readings`] one by one, so that those of a CSV file are never in memory together.
+///
+/// # Errors
+/// As of [`truth`], of what can be told before the first row.
+pub fn as_read(folder: &Path, kind: SensorKind) -> Result<AsRead, DatasetError> {
     let file = folder.join(format!("{kind}.csv"));
     if !file.exists()
         && let Some(readings) = other::readings(folder, kind)?
     {
-        return Ok(readings);
+        return Ok(Box::new(readings.into_iter().map(Ok)));
     }
     let names = ["x", "y", "z"].map(|axis| format!("{axis}_{}", kind.column_unit()));
     let mut columns = Columns::open(&file, names.each_ref().map(String::as_str))?;
     let axes = axes(&file)?;
-    let mut readings = Vec::new();
-    while let Some((t, value)) = columns.next()? {
-        readings.push((t, axes.body_in(DVec3::from_array(value))));
-    }
-    Ok(readings)
+    let mut over = false;
+    Ok(Box::new(std::iter::from_fn(move || {
+        if over {
+            return None;
+        }
+        let row = columns.next().map(|row| row.map(|(t, value)| (t, axes.body_in(DVec3::from_array(value)))));
+        over = !matches!(row, Ok(Some(_)));
+        row.transpose()
+    })))
 }
 
 /// The axes that the manifest beside a file names.

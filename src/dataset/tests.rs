@@ -837,3 +837,23 @@ fn an_aids_tables_have_what_it_reads_beside_what_is_true() {
     let lines: Vec<_> = figures.iter().map(|figure| (figure.file_stem, figure.series.len())).collect();
     assert_eq!(lines, [("gyro", 6), ("baro", 2), ("gps", 6), ("angles", 3)]);
 }
+
+#[test]
+fn a_figure_breaks_where_samples_are_missing() {
+    let scene = "duration = \"10 s\"\n[gyro]\nrate = \"50 Hz\"\n[baro]\nrate = \"20 Hz\"\n\
+        [[fault]]\nkind = \"off\"\nsensor = \"baro\"\nstart = \"3 s\"\nduration = \"3 s\"\n";
+    let plan = Plan::parse(scene, "s", "s", &[]).unwrap();
+    let mut figures = Figures::new(&plan, plan.duration);
+    let Ok(()) = Player::new(&plan, plan.duration, player::BLOCK).play(|moment| {
+        figures.add(&moment);
+        Ok::<(), std::convert::Infallible>(())
+    });
+    for figure in figures.done() {
+        for series in &figure.series {
+            let breaks: Vec<f64> =
+                series.points.iter().filter(|(_, value)| value.is_nan()).map(|(t, _)| *t).collect();
+            let expected = if figure.file_stem == "baro" { vec![6.0] } else { Vec::new() };
+            assert_eq!(breaks, expected, "{} {}", figure.file_stem, series.label);
+        }
+    }
+}

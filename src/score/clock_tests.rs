@@ -55,7 +55,7 @@ fn cone(t: f64) -> Attitude {
 /// Vibration at 37 Hz under slow tilts.
 fn vibration(t: f64) -> Attitude {
     let shake = 0.002 * libm::sin(TAU * 37.0 * t) * step(t, 2.0, 1.0);
-    euler(0.3 * (step(t, 10.0, 6.0) - step(t, 26.0, 8.0)) + shake, 0.2 * step(t, 18.0, 5.0) - shake, 0.0)
+    euler(0.3 * (step(t, 10.0, 2.0) - step(t, 26.0, 3.0)) + shake, 0.3 * step(t, 18.0, 2.0) - shake, 0.0)
 }
 
 /// A rocking that repeats for ever.
@@ -151,12 +151,23 @@ fn judged(motion: Motion, series: &Series, options: &Options) -> Result<Judged, 
     judge_series(&|t: SimTime| Some(motion(t.seconds())), series.clone(), &[], options)
 }
 
-/// How an estimate came out: the error of the clock found, s, or that it is not known; or what is wrong.
-fn outcome(motion: Motion, seed: u64) -> Result<Option<f64>, String> {
+/// How an estimate came out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Outcome {
+    /// Its clock is certain, and so much off, s.
+    Certain(f64),
+    /// Its figure is told, its clock is said not to be certain.
+    Doubtful,
+    /// It is not known when its attitudes held, and there is no figure.
+    Unknown,
+}
+
+/// How an estimate came out, or what is wrong.
+fn outcome(motion: Motion, seed: u64) -> Result<Outcome, String> {
     let made = make(motion, seed, None);
     let figures = match judged(motion, &made.series, &options()) {
         Ok(judged) => judged.figures,
-        Err(Unjudged::When(why)) if why.len() > 20 => return Ok(None),
+        Err(Unjudged::When(why)) if why.len() > 20 => return Ok(Outcome::Unknown),
         Err(other) => return Err(other.to_string()),
     };
     let (off, sharp) = match (figures.clock_offset_s, figures.fitted) {
@@ -165,14 +176,15 @@ fn outcome(motion: Motion, seed: u64) -> Result<Option<f64>, String> {
         (None, Some(fitted)) => {
             (fitted.delay_ms * 1e-3 - made.ahead, 4e-3 * fitted.delay_std_ms.unwrap_or(0.0) + 0.005)
         }
-        (None, None) => return Ok(None),
+        (None, None) => return Ok(Outcome::Doubtful),
     };
     let rms = figures.fitted.map_or(figures.errors.rms_deg, |fitted| fitted.errors.rms_deg);
     // Right to 5 ms if it is said to be certain; whatever is said, the figure is right.
     let is_right = (rms - made.rms_deg).abs() < (0.05 * made.rms_deg).max(0.03);
-    match !is_right || figures.clock_certain && off.abs() > sharp {
-        true => Err(format!("{off} s off, {rms} deg RMS for {}, {figures:?}", made.rms_deg)),
-        false => Ok(figures.clock_certain.then_some(off)),
+    match (!is_right || figures.clock_certain && off.abs() > sharp, figures.clock_certain) {
+        (true, _) => Err(format!("{off} s off, {rms} deg RMS for {}, {figures:?}", made.rms_deg)),
+        (_, true) => Ok(Outcome::Certain(off)),
+        _ => Ok(Outcome::Doubtful),
     }
 }
 
@@ -186,7 +198,7 @@ fn an_offset_is_right_within_5_ms_or_declared_unknown() {
     let seeds = seeds();
     let cases: Vec<(usize, u64)> =
         (0..MOTIONS.len()).flat_map(|m| (0..seeds).map(move |seed| (m, seed))).collect();
-    let run = |cases: &[(usize, u64)]| -> Vec<(usize, u64, Result<Option<f64>, String>)> {
+    let run = |cases: &[(usize, u64)]| -> Vec<(usize, u64, Result<Outcome, String>)> {
         cases.iter().map(|&(m, seed)| (m, seed, outcome(MOTIONS[m].1, seed))).collect()
     };
     let (first, second) = cases.split_at(cases.len() / 2);
@@ -201,43 +213,48 @@ fn an_offset_is_right_within_5_ms_or_declared_unknown() {
     let wrong: Vec<String> = wrong.map(|(name, seed, why)| format!("{name} {seed}: {why}")).collect();
     assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
     for (m, (name, _)) in MOTIONS.iter().enumerate() {
-        let of = found.iter().filter(|(of, ..)| *of == m);
-        let known: Vec<f64> = of.filter_map(|(.., off)| off.clone().ok().flatten()).collect();
-        let worst = known.iter().fold(0.0f64, |worst, off| worst.max(off.abs()));
-        eprintln!("{name}: {} of {seeds} known, {:.2} ms off at most", known.len(), worst * 1e3);
-        // A motion that does not repeat tells nearly always; one that does, only with a rest beside it.
-        let least = if *name == "rocking" { 0 } else { seeds as usize * 9 / 10 };
-        assert!(known.len() >= least, "{name}: only {} known", known.len());
-        assert!(*name != "rocking" || known.len() < seeds as usize / 2, "{name}: {} known", known.len());
+        let of: Vec<Outcome> =
+            found.iter().filter(|(of, ..)| *of == m).filter_map(|(.., found)| found.clone().ok()).collect();
+        let certain =
+            |outcome: &Outcome| if let Outcome::Certain(off) = outcome { Some(off.abs()) } else { None };
+        let worst = of.iter().filter_map(certain).fold(0.0, f64::max);
+        let count = |wanted: fn(&Outcome) -> bool| of.iter().filter(|outcome| wanted(outcome)).count();
+        let [certain, unknown] =
+            [count(|it| matches!(it, Outcome::Certain(_))), count(|it| matches!(it, Outcome::Unknown))];
+        eprintln!(
+            "{name}: of {seeds} {certain} certain, {:.2} ms off at most; {unknown} unknown",
+            worst * 1e3
+        );
+        // A motion that does not repeat nearly always tells enough for a figure; one that does, only with a rest beside.
+        let most = if *name == "rocking" { of.len() } else { of.len() / 10 };
+        assert!(unknown <= most, "{name}: {unknown} unknown");
+        assert!(*name != "rocking" || certain < of.len() / 3, "{name}: {certain} certain");
     }
 }
 
 #[test]
 fn a_rest_that_is_known_tells_where_a_motion_that_repeats_begins() {
-    for seed in 0..40 {
+    let (mut alone, mut rested) = (0, 0);
+    for seed in 0..60 {
         let made = make(rocking, seed, Some(17.0));
-        let alone = judged(rocking, &made.series, &options());
-        let rest = Options { rest: SimTime(25_000_000_000), ..options() };
-        if let Ok(judged) = judged(rocking, &made.series, &rest)
-            && judged.figures.clock_certain
-        {
-            let off = judged.figures.clock_offset_s.unwrap() - made.ahead;
-            assert!(off.abs() < 0.005, "{seed}: {off}");
-        }
-        if let Err(Unjudged::When(why)) = alone {
-            assert!(why.contains("the motion repeats"), "{seed}: {why}");
-        }
+        let is_certain = |options: &Options| match judged(rocking, &made.series, options) {
+            Ok(judged) if judged.figures.clock_certain => {
+                let off = judged.figures.clock_offset_s.unwrap() - made.ahead;
+                assert!(off.abs() < 0.005, "{seed}: {off}");
+                true
+            }
+            Ok(_) => false,
+            Err(why) => {
+                let Unjudged::When(why) = why else { panic!("{seed}: {why}") };
+                assert!(why.contains("repeats") || why.contains("give or take"), "{seed}: {why}");
+                false
+            }
+        };
+        alone += usize::from(is_certain(&options()));
+        rested += usize::from(is_certain(&Options { rest: SimTime(25_000_000_000), ..options() }));
     }
-    // Begun long before, it rests where the truth does, and there is no doubt.
-    let made = (0..200)
-        .map(|seed| make(rocking, seed, Some(17.0)))
-        .find(|made| made.series.times()[0] < 0 && made.rms_deg < 60.0);
-    let made = made.unwrap();
-    let rest = Options { rest: SimTime(25_000_000_000), ..options() };
-    let judged = judged(rocking, &made.series, &rest).unwrap();
-    assert!(
-        judged.figures.clock_certain && (judged.figures.clock_offset_s.unwrap() - made.ahead).abs() < 0.005
-    );
+    // Half of them began before the scene; where it is known that the vehicle rested then, most of those are found.
+    assert!(rested >= alone + 8, "{rested} beside {alone}");
 }
 
 /// Negative controls.

@@ -50,13 +50,20 @@ pub(super) struct Fit {
     pub delay: i64,
     /// Its standard error, ns.
     pub error: f64,
+    /// How far away the furthest delay is that is about as likely, ns: vibration has one a period away.
+    pub rival: f64,
     /// Why it should not be believed.
     pub doubt: Option<&'static str>,
 }
 
 impl Fit {
+    /// Three standard errors, or as far as the furthest rival, ns.
+    pub fn spread(&self) -> f64 {
+        (3.0 * self.error).max(self.rival)
+    }
+
     /// None, known without looking.
-    pub const EXACT: Fit = Fit { delay: 0, error: 0.0, doubt: None };
+    pub const EXACT: Fit = Fit { delay: 0, error: 0.0, rival: 0.0, doubt: None };
 }
 
 /// Why no delay follows from a motion.
@@ -274,32 +281,31 @@ pub(super) fn near(
     let found = |pairs: &Pairs, window: Range<i64>| {
         let delay = pairs.refine(on_grid, window);
         let (error, doubt) = pairs.told(on_grid, delay);
-        Fit { delay, error, doubt }
+        Fit { delay, error, rival: 0.0, doubt }
     };
     let spans = if free { &SPANS[..1] } else { &SPANS[..] };
     let tried = spans.iter().filter_map(|&span| {
         let span = limited(grid, span, free);
         let pairs = Pairs::new(series, span, free, FEW);
         let (best, rival) = pairs.deepest(on_grid, window, step)?;
-        let mut fit = found(&pairs, best - step..best + step);
-        fit.error = fit.error.max(rival);
-        Some((span, rival, fit))
+        let fit = found(&pairs, best - step..best + step);
+        Some((span, Fit { rival, ..fit }))
     });
-    let doubtful = |fit: &Fit| (fit.doubt.is_some(), fit.error);
-    let best = tried.min_by(|(.., a), (.., b)| {
+    let doubtful = |fit: &Fit| (fit.doubt.is_some(), fit.spread());
+    let best = tried.min_by(|(_, a), (_, b)| {
         let ((a, x), (b, y)) = (doubtful(a), doubtful(b));
         a.cmp(&b).then(x.total_cmp(&y))
     });
-    let Some((span, rival, fit)) = best else {
+    let Some((span, fit)) = best else {
         return Fit {
             delay: i64::midpoint(window.start, window.end),
             error: f64::INFINITY,
+            rival: 0.0,
             doubt: Some(TOO_EVEN),
         };
     };
     let pairs = Pairs::new(series, span, free, MANY);
-    let mut fit = found(&pairs, fit.delay - step..fit.delay + step);
-    fit.error = fit.error.max(rival);
+    let mut fit = Fit { rival: fit.rival, ..found(&pairs, fit.delay - step..fit.delay + step) };
     if fit.doubt.is_none() {
         // The grid's chords are right to microseconds; the truth itself is exact.
         fit.delay = pairs.refine(exact, fit.delay - step / 16..fit.delay + step / 16);
@@ -370,7 +376,7 @@ pub(super) fn within(
     let costs: Vec<f64> = delays.iter().map(cost).collect();
     let best = least(&delays, &costs)?;
     let mut fit = near(grid, exact, series, &(delays[best] - step..delays[best] + step), step, false);
-    if 3.0 * fit.error > step as f64 {
+    if fit.spread() > step as f64 {
         // What wanders moves the dip of one span by more than a step.
         fit = near(grid, exact, series, &(delays[best] - 20 * step..delays[best] + 20 * step), step, false);
     }

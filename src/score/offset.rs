@@ -14,7 +14,7 @@ use std::ops::Range;
 /// A cell of the grid: at least this, ns.
 const STEP: i64 = 20_000_000;
 /// The most cells of the longer of the two.
-const CELLS: i64 = 1 << 18;
+const CELLS: i64 = 1 << 17;
 /// Rates are means over so many cells, the second for an estimate with more noise.
 const WIDTHS: [usize; 2] = [5, 25];
 /// Rows further apart than this say nothing of what is between, ns; and than so many of the median interval.

@@ -131,14 +131,14 @@ fn settle(bench: &Bench<'_>, series: &Series, found: &Match) -> Result<Placed, S
         other: true,
         ahead: fit.delay,
         error: Some(fit.error),
-        certain: fit.doubt.is_none() && fit.error <= SHARP,
+        certain: fit.doubt.is_none() && fit.error <= SHARP && fit.rival == 0.0,
         note: None,
         delay: None,
     };
     if placed.certain {
         return Ok(placed);
     }
-    let reach = (3.0 * fit.error).min((found.within.end - found.within.start) as f64) as i64;
+    let reach = fit.spread().min((found.within.end - found.within.start) as f64) as i64;
     let (least, most) = spread(bench, series, [-reach, 0, reach].map(|off| fit.delay + off));
     let around = format!(
         "its clock is {:.3} s ahead of the truth's, give or take {:.3} s",

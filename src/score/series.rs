@@ -30,6 +30,12 @@ impl Series {
         Series { times: self.times[range.clone()].to_vec(), attitudes: self.attitudes[range].to_vec() }
     }
 
+    /// Adds a row.
+    pub fn push(&mut self, t: i64, attitude: Attitude) {
+        self.times.push(t);
+        self.attitudes.push(Packed::new(attitude.q.normalize()));
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.times.len()

@@ -1,7 +1,8 @@
 //! Descriptor 80: what the inertial sensors read, in as many fields as there are sensors.
 //!
 //! Axes are forward, right, down. Fields that are not known here are stepped over. Of several that tell the time the
-//! one is read that a unit's clock steps least in: its own nanoseconds, then those of an outer clock, then its ticks.
+//! one is read that a unit's clock steps least in: its own nanoseconds, then those of an outer clock. The ticks of field 0E are
+//! stepped over: no packet says how long one is.
 
 use core::ops::Range;
 
@@ -14,15 +15,11 @@ pub const DESCRIPTOR: u8 = 0x80;
 /// Bytes of all fields together.
 pub const MAX_LEN: usize = 6 + 3 * 14 + 14;
 
-/// Ticks a second of [`Time::Ticks`].
-pub const TICKS_PER_S: u64 = 62_500;
-
 mod descriptor {
     pub(super) const ACCEL: u8 = 0x04;
     pub(super) const GYRO: u8 = 0x05;
     pub(super) const MAG: u8 = 0x06;
     pub(super) const PRESSURE: u8 = 0x17;
-    pub(super) const TICKS: u8 = 0x0e;
     pub(super) const GPS: u8 = 0x12;
     // Of every set of fields.
     pub(super) const SHARED_GPS: u8 = 0xd3;
@@ -37,7 +34,6 @@ mod field {
     pub(super) const DESCRIPTOR: usize = 1;
     pub(super) const SCALAR: Range<usize> = 2..6;
     pub(super) const VECTOR: Range<usize> = 2..14;
-    pub(super) const TICKS: Range<usize> = 2..6;
     pub(super) const NS: Range<usize> = 2..10;
     pub(super) const NS_VALID: Range<usize> = 10..12;
     pub(super) const TIME_OF_WEEK: Range<usize> = 2..10;
@@ -57,8 +53,6 @@ pub enum Time {
     SharedGps(f64, u16, u16),
     /// The same in the field of the inertial set.
     Gps(f64, u16, u16),
-    /// Of the unit's timer, [`TICKS_PER_S`] a second, wrapping.
-    Ticks(u32),
 }
 
 impl Time {
@@ -70,7 +64,6 @@ impl Time {
             Self::Gps(of_week, week, _) | Self::SharedGps(of_week, week, _) => (0.0..1e6)
                 .contains(&of_week)
                 .then(|| u64::from(week) * WEEK_NS + (of_week * 1e9 + 0.5) as u64),
-            Self::Ticks(ticks) => Some(u64::from(ticks) * (1_000_000_000 / TICKS_PER_S)),
         }
     }
 
@@ -79,7 +72,6 @@ impl Time {
             Self::Reference(_) => field::NS.end,
             Self::External(..) => field::NS_VALID.end,
             Self::SharedGps(..) | Self::Gps(..) => field::GPS_VALID.end,
-            Self::Ticks(_) => field::TICKS.end,
         }
     }
 
@@ -103,10 +95,6 @@ impl Time {
                 bytes::put_be(out, field::TIME_OF_WEEK, of_week);
                 bytes::put_be(out, field::WEEK, week);
                 bytes::put_be(out, field::GPS_VALID, valid);
-            }
-            Self::Ticks(ticks) => {
-                kind(descriptor::TICKS);
-                bytes::put_be(out, field::TICKS, ticks);
             }
         }
     }
@@ -132,7 +120,6 @@ impl<T: AsRef<[u8]>> Payload<T> {
             let expected = match rest[field::DESCRIPTOR] {
                 descriptor::PRESSURE => field::SCALAR.end,
                 descriptor::ACCEL | descriptor::GYRO | descriptor::MAG => field::VECTOR.end,
-                descriptor::TICKS => field::TICKS.end,
                 descriptor::GPS | descriptor::SHARED_GPS => field::GPS_VALID.end,
                 descriptor::REFERENCE => field::NS.end,
                 descriptor::EXTERNAL => field::NS_VALID.end,
@@ -176,7 +163,6 @@ impl<T: AsRef<[u8]>> Payload<T> {
             .or_else(|| self.find(descriptor::EXTERNAL).map(external))
             .or_else(|| self.find(descriptor::SHARED_GPS).map(gps).map(shared))
             .or_else(|| self.find(descriptor::GPS).map(gps).map(own))
-            .or_else(|| self.find(descriptor::TICKS).map(|found| Time::Ticks(bytes::be(found, field::TICKS))))
     }
 
     /// Pressure, mbar.
@@ -319,7 +305,7 @@ mod tests {
     }
 
     /// Each field that tells the time, as its bytes stand, what it says and that in ns.
-    const TIMES: [(&[u8], Time, u64); 5] = [
+    const TIMES: [(&[u8], Time, u64); 4] = [
         (&[10, 0xd5, 0, 0, 0, 1, 0, 0, 0, 2], Time::Reference((1 << 32) + 2), (1 << 32) + 2),
         (&[12, 0xd7, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1], Time::External(256, 1), 256),
         // 1.5 s into week 1.
@@ -329,12 +315,11 @@ mod tests {
             604_801_500_000_000,
         ),
         (&[14, 0x12, 0x3f, 0xf8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], Time::Gps(1.5, 0, 0), 1_500_000_000),
-        (&[6, 0x0e, 0, 0, 0, 3], Time::Ticks(3), 48_000),
     ];
 
     #[test]
     fn the_time_is_read_from_whatever_field_has_it_and_the_steadiest_first() {
-        let mut all = [0; 56];
+        let mut all = [0; 50];
         let mut at = all.len();
         // From the least wanted on, so that each that is put in front of the others is asked for first.
         for (field, time, ns) in TIMES.into_iter().rev() {

@@ -47,8 +47,9 @@ impl Book {
     }
 
     /// Adds report and charts and shows the folder.
-    pub fn close(self, report: &ScoreReport, truth: &Truth, json: &str) -> Result<(), DatasetError> {
+    pub fn close(mut self, report: &ScoreReport, truth: &Truth, json: &str) -> Result<(), DatasetError> {
         self.errors.close()?;
+        self.drawn.sort_by(|a, b| b.restless().total_cmp(&a.restless()));
         let [json_name, _, attitude, error] = FILES;
         self.folder.put(json_name, json.as_bytes())?;
         self.folder.put(attitude, charts::attitude(report, &self.drawn, truth).as_bytes())?;

@@ -50,6 +50,12 @@ impl Drawn {
         self.errors.iter_mut().zip(errors).for_each(|(column, error)| column.push(error.to_degrees()));
     }
 
+    /// How much its error moves from point to point, deg: what moves most is drawn first, behind the others, in every
+    /// chart.
+    pub fn restless(&self) -> f64 {
+        self.errors[0].windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
+    }
+
     /// Roll, pitch and yaw, deg.
     fn angles(&self, axes: Axes) -> [Vec<f64>; 3] {
         angles(self.attitudes.iter().copied(), axes)
@@ -79,20 +85,16 @@ fn with_gaps(t: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
     points
 }
 
-/// A panel's lines in the order in which they are drawn: what moves most from point to point lies behind.
+/// A panel's lines.
 struct Lines(Vec<(String, Vec<f64>, Vec<f64>)>);
 
 impl Lines {
     fn of<'a>(drawn: impl Iterator<Item = (&'a str, &'a [f64], &'a [f64])>) -> Lines {
-        let mut lines: Vec<_> = drawn
-            .map(|(name, t, y)| {
-                let restless: f64 = y.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-                let (t, y) = with_gaps(t, y);
-                (restless, (name.to_string(), t, y))
-            })
-            .collect();
-        lines.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Lines(lines.into_iter().map(|(_, line)| line).collect())
+        let line = |(name, t, y): (&str, &[f64], &[f64])| {
+            let (t, y) = with_gaps(t, y);
+            (name.to_string(), t, y)
+        };
+        Lines(drawn.map(line).collect())
     }
 
     fn lines(&self) -> Vec<Line<'_>> {

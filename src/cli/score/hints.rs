@@ -40,19 +40,19 @@ fn rotation(turned: Aligned, rms: f64, known: Known) -> String {
         let body = if body_deg < NONE {
             String::new()
         } else {
-            format!(", and one of the body of {} deg", number(body_deg))
+            format!(", and one of the body of {} deg", angle(body_deg))
         };
-        let (world, option) = (number(world_deg), if body_deg < NONE { "world" } else { "frames" });
+        let (world, option) = (angle(world_deg), if body_deg < NONE { "world" } else { "frames" });
         return format!(
             "a constant rotation of the world of {world} deg ({} deg of it heading){body} explains the error ({rest}): --align {option} takes it out",
-            number(heading_deg)
+            angle(heading_deg)
         );
     }
-    let heading = number(heading_deg);
+    let heading = angle(heading_deg);
     match known.declination_deg {
         Some(declination) if declination.abs() > NEAR && (heading_deg + declination).abs() < NEAR => format!(
             "its heading is off by {heading} deg: the scene's declination is {} deg, which the estimator does not account for ({rest}); --align heading takes it out",
-            number(declination)
+            angle(declination)
         ),
         _ if known.without_mag => format!(
             "its heading is off by {heading} deg, and without a magnetometer it is free ({rest}): --align heading takes it out"
@@ -61,4 +61,9 @@ fn rotation(turned: Aligned, rms: f64, known: Known) -> String {
             "a constant heading of {heading} deg explains the error ({rest}): --align heading takes it out"
         ),
     }
+}
+
+/// An angle of a frame, to a thousandth of a degree.
+pub(super) fn angle(deg: f64) -> String {
+    number(libm::round(deg * 1000.0) / 1000.0 + 0.0)
 }

@@ -2,14 +2,16 @@
 
 use super::units::{self, Unit};
 use super::{Arguments, Estimates, Refusal, Source, hints};
-use crate::dataset::read::{self as stored, readings};
-use crate::filters::{self, FILTERS, FilterKind, Readings, SIX};
+use crate::cli::progress::Bar;
+use crate::dataset::read as stored;
+use crate::filters::{self, FILTERS, FilterKind, SIX, Stream, Streams};
 use crate::geometry::Axes;
 use crate::scene::{Plan, nearest};
 use crate::score::{self, Clock, Reading, Recorded, Series, Track};
 use crate::sensor::SensorKind;
 use crate::table::{TimeUnit, Times};
 use crate::time::SimTime;
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 /// What estimates are set against.
@@ -39,8 +41,9 @@ enum Given {
 }
 
 /// Reads truth and estimates; every file that cannot be read is told.
-pub(super) fn load(arguments: &Arguments) -> Result<(Truth, Vec<Source>), Refusal> {
+pub(super) fn load(arguments: &Arguments, bar: &Bar) -> Result<(Truth, Vec<Source>), Refusal> {
     let path = &arguments.truth;
+    bar.step(format!("reads {}", path.display()));
     let read = truth(path, arguments)?;
     let axes = match &read {
         Read::Dataset(_, axes) => *axes,
@@ -49,6 +52,7 @@ pub(super) fn load(arguments: &Arguments) -> Result<(Truth, Vec<Source>), Refusa
     let folder = path.is_dir().then(|| path.clone());
     let (mut given, mut mistakes) = (Vec::new(), Vec::new());
     for name in &arguments.estimate {
+        bar.step(format!("reads {name}"));
         match estimate(name, folder.as_deref(), axes, arguments) {
             Ok(one) => given.push((name, one)),
             Err(Refusal(why)) => mistakes.push(why),
@@ -59,12 +63,14 @@ pub(super) fn load(arguments: &Arguments) -> Result<(Truth, Vec<Source>), Refusa
     }
     let (unit, units) = choose(path, &read, &given, arguments)?;
     let truth = settled(path, read, axes, unit, folder)?;
-    let mut data = None;
     let mut sources: Vec<Source> = Vec::new();
     for ((name, given), unit) in given.into_iter().zip(units) {
         let mut source = match given {
             Given::File(path, recorded) => file(&truth, name, &path, recorded, unit)?,
-            Given::Filter(kind, with_mag) => run(&truth, name, kind, with_mag, &mut data)?,
+            Given::Filter(kind, with_mag) => {
+                bar.step(format!("runs {name}"));
+                run(&truth, name, kind, with_mag)?
+            }
         };
         source.name = unlike(source.name, &sources);
         sources.push(source);
@@ -116,16 +122,8 @@ fn settled(
             (Track::of(series).map_err(|why| refuse(why.to_string()))?.with_gaps(), remarks)
         }
     };
-    let rest = folder.as_deref().and_then(rest).unwrap_or(SimTime::ZERO);
+    let rest = folder.as_deref().and_then(stored::rest).unwrap_or(SimTime::ZERO);
     Ok(Truth { track, axes, rest, unit, remarks, folder })
-}
-
-/// For how long a run held the vehicle still before the scene.
-fn rest(folder: &Path) -> Option<SimTime> {
-    let report = std::fs::read(folder.join("report.json")).ok()?;
-    let report: serde_json::Value = serde_json::from_slice(&report).ok()?;
-    let seconds = report.get("rest_s")?.as_f64().filter(|rest| (0.0..1e6).contains(rest))?;
-    Some(SimTime((seconds * 1e9) as i64))
 }
 
 /// Reads one estimate, or names the filter.
@@ -265,32 +263,43 @@ impl Truth {
     }
 }
 
-/// What filters run on: the dataset's readings and its declination.
-type Data = (Readings, f64);
-
-fn run(
-    truth: &Truth,
-    name: &str,
-    kind: &FilterKind,
-    with_mag: bool,
-    data: &mut Option<Data>,
-) -> Result<Source, Refusal> {
+/// Runs a filter on a dataset's readings, which are read meanwhile.
+fn run(truth: &Truth, name: &str, kind: &FilterKind, with_mag: bool) -> Result<Source, Refusal> {
     let Some(folder) = &truth.folder else { return Err(Refusal(name.to_string())) };
-    if data.is_none() {
-        *data = Some((of_dataset(folder)?, declination(folder)?));
-    }
-    let Some((readings, declination)) = data else { return Err(Refusal(name.to_string())) };
-    for (sensor, column) in [("gyro", &readings.gyro), ("accel", &readings.accel)] {
-        if column.is_empty() {
+    for sensor in [SensorKind::Gyro, SensorKind::Accel] {
+        if !stored::has(folder, sensor) {
+            let folder = folder.display();
             return Err(Refusal(format!(
-                "the filter {name} needs readings of {sensor}, and {} has none",
-                folder.display()
+                "the filter {name} needs readings of {sensor}, and {folder} has none"
             )));
         }
     }
-    let estimates = filters::run(kind, readings, with_mag, *declination);
-    let series = Series::new(estimates.into_iter().map(|(t, attitude)| (t.0, attitude)));
-    let lacks = with_mag && readings.mag.is_empty();
+    let failed = RefCell::new(None);
+    let of = |sensor: SensorKind| -> Result<Stream<'_>, Refusal> {
+        if !stored::has(folder, sensor) {
+            return Ok(Box::new(std::iter::empty()));
+        }
+        let readings = stored::as_read(folder, sensor)?;
+        let failed = &failed;
+        Ok(Box::new(readings.map_while(move |reading| match reading {
+            Ok(reading) => Some(reading),
+            Err(error) => {
+                failed.borrow_mut().get_or_insert(error);
+                None
+            }
+        })))
+    };
+    let has_mag = stored::has(folder, SensorKind::Mag);
+    let mag = if with_mag { of(SensorKind::Mag)? } else { Box::new(std::iter::empty()) };
+    let streams = Streams { gyro: of(SensorKind::Gyro)?, accel: of(SensorKind::Accel)?, mag };
+    let mut series = Series::default();
+    filters::run_as_read(kind, streams, with_mag, declination(folder)?, |t, attitude| {
+        series.push(t.0, attitude)
+    });
+    if let Some(error) = failed.into_inner() {
+        return Err(error.into());
+    }
+    let lacks = with_mag && !has_mag;
     let remarks = if lacks {
         vec!["the dataset has no magnetometer: heading is from where it starts".to_string()]
     } else {
@@ -305,14 +314,6 @@ fn run(
         recorded: Estimates { series, others: Vec::new(), axes: Axes::NedFrd, remarks },
         hints: truth.known(!with_mag || lacks),
     })
-}
-
-fn of_dataset(folder: &Path) -> Result<Readings, Refusal> {
-    let of = |kind: SensorKind| match stored::has(folder, kind) {
-        true => readings(folder, kind),
-        false => Ok(Vec::new()),
-    };
-    Ok(Readings { gyro: of(SensorKind::Gyro)?, accel: of(SensorKind::Accel)?, mag: of(SensorKind::Mag)? })
 }
 
 /// How far east of true north the scene's field points, rad: a filter is told it, as a controller is.

@@ -1,5 +1,6 @@
 //! The comparison as a person reads it.
 
+use super::hints::angle;
 use crate::cli::terminal::Stream;
 use crate::report::{ScoreReport, Scored, number};
 use crate::score::{DelayKnown, Errors, Figures};
@@ -97,16 +98,16 @@ fn notes(scored: &Scored) -> Vec<String> {
     }
     if let Some(aligned) = f.aligned {
         let body = if aligned.body_deg > 0.0 {
-            format!(" and one of the body of {} deg", number(aligned.body_deg))
+            format!(" and one of the body of {} deg", angle(aligned.body_deg))
         } else {
             String::new()
         };
         notes.push(match f.heading_offset_deg {
-            Some(heading) => format!("a heading of {} deg is taken out", number(heading)),
+            Some(heading) => format!("a heading of {} deg is taken out", angle(heading)),
             None => format!(
                 "a rotation of the world of {} deg ({} deg of it heading){body} is taken out",
-                number(aligned.world_deg),
-                number(aligned.heading_deg)
+                angle(aligned.world_deg),
+                angle(aligned.heading_deg)
             ),
         });
     }

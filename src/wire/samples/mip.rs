@@ -5,7 +5,7 @@ use super::{Carrier, Counts, Sample, Source};
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
-use crate::time::{NANOS, SimTime};
+use crate::time::SimTime;
 use crate::wire::mavlink::MICROTESLA_A_GAUSS;
 use glam::DVec3;
 use ratetable_protocols::Error;
@@ -14,57 +14,30 @@ use ratetable_protocols::mip::{Decoder, imu};
 #[derive(Default)]
 pub(super) struct Reader {
     decoder: Decoder,
-    clock: Ticks,
-}
-
-/// A timer of 32 bits that goes on counting where it wraps.
-#[derive(Default)]
-struct Ticks {
-    newest: u32,
-    turns: u64,
-}
-
-impl Ticks {
-    /// This many ticks in all.
-    fn take(&mut self, ticks: u32) -> u64 {
-        let goes_on = ticks.wrapping_sub(self.newest) < 1 << 31;
-        self.turns += u64::from(goes_on && ticks < self.newest);
-        self.newest = ticks;
-        self.turns << 32 | u64::from(ticks)
-    }
 }
 
 impl Reader {
     pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        let Reader { decoder, clock } = self;
-        decoder.feed(bytes, |received| take(received, clock, counts, each));
+        let Reader { decoder } = self;
+        decoder.feed(bytes, |received| take(received, counts, each));
     }
 
     pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        let Reader { decoder, clock } = self;
+        let Reader { decoder } = self;
         decoder.finish(|received| {
             if !matches!(received, Err(Error::Malformed | Error::Checksum)) {
-                take(received, clock, counts, each);
+                take(received, counts, each);
             }
         });
     }
 }
 
 /// When the packet's data were sampled.
-fn time(time: Option<imu::Time>, clock: &mut Ticks) -> Option<SimTime> {
-    let ns = match time? {
-        imu::Time::Ticks(ticks) => clock.take(ticks) * (NANOS as u64 / imu::TICKS_PER_S),
-        other => other.ns()?,
-    };
-    i64::try_from(ns).ok().map(SimTime)
+fn time(time: Option<imu::Time>) -> Option<SimTime> {
+    i64::try_from(time?.ns()?).ok().map(SimTime)
 }
 
-fn take(
-    received: Result<imu::Repr, Error>,
-    clock: &mut Ticks,
-    counts: &mut Counts,
-    each: &mut impl FnMut(Sample),
-) {
+fn take(received: Result<imu::Repr, Error>, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
     let seen = match received {
         Ok(seen) => seen,
         Err(Error::UnknownType(descriptor)) => {
@@ -77,7 +50,7 @@ fn take(
     if [seen.gyro, seen.accel, seen.mag] == [None; 3] {
         return counts.foreign("pressure alone");
     }
-    let t = time(seen.time, clock);
+    let t = time(seen.time);
     let mut sample = |kind, values: Option<[f32; 3]>, unit: f64| {
         let Some(values) = values else { return };
         let value = DVec3::from_array(values.map(f64::from)) * unit;
