@@ -83,20 +83,23 @@ pub(super) struct Pairs {
 impl Pairs {
     /// About `count` pairs about `span` ns apart.
     fn new(series: &Series, span: i64, free: bool, count: usize) -> Pairs {
-        let rows: Vec<_> = series.rows().collect();
-        let every = rows.len().div_ceil(count).max(1);
+        let times = series.times();
+        let row = |i: usize| (times[i], series.attitude(i).q);
+        let every = times.len().div_ceil(count).max(1);
         let mut other = 0;
-        let mut pairs = Vec::with_capacity(rows.len() / every);
-        for (i, &first) in rows.iter().enumerate().step_by(every) {
+        let mut pairs = Vec::with_capacity(times.len() / every);
+        for i in (0..times.len()).step_by(every) {
             other = other.max(i + 1);
-            while other < rows.len() && rows[other].0 - first.0 < span {
+            while other < times.len() && times[other] - times[i] < span {
                 other += 1;
             }
+            if other == times.len() {
+                break;
+            }
             // Rows further apart than the span have it for themselves; a gap has nothing.
-            let Some(&second) = rows.get(other) else { break };
-            let apart = second.0 - first.0;
+            let apart = times[other] - times[i];
             if apart > 0 && (apart <= 2 * span || other == i + 1) {
-                pairs.push([first, second]);
+                pairs.push([row(i), row(other)]);
             }
         }
         Pairs { span, pairs, free }
