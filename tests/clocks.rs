@@ -326,3 +326,70 @@ fn a_heading_off_by_the_scenes_declination_is_named_as_that() {
         assert!(names_it || scored.said.contains("a constant heading of"), "{}", scored.said);
     }
 }
+
+#[test]
+fn a_clock_that_wraps_goes_on_and_one_that_is_set_parts_a_log() {
+    let bench = Bench::new();
+    let truth = bench.dataset("level-then-turn", &[]);
+    let rows = read::truth(&truth).unwrap().attitudes;
+    let truth = truth.to_str().unwrap();
+    // A counter of ms in 32 bits, 20 s before its end as the scene begins.
+    let mut text = String::from("time_boot_ms,qw,qx,qy,qz\n");
+    let ahead = 4_294_967_296_i64 - 20_000;
+    for (t, at) in rows.iter().step_by(16).filter(|(t, _)| t.0 % 1_000_000 == 0) {
+        text += &row((t.0 / 1_000_000 + ahead) % 4_294_967_296, at.q);
+    }
+    let wrapped = bench.put("wrapped.csv", &text);
+    let scored = score(&[truth, &wrapped]);
+    assert!((scored.figure("clock_offset_s") - ahead as f64 * 1e-3).abs() < 0.005, "{}", scored.said);
+    assert!(scored.figure("coverage") > 0.99 && scored.figure("rms_deg") < 0.05, "{}", scored.said);
+    // A clock that learns the date in mid-log, and one that begins anew: the longer part is judged.
+    for (jump, from) in [(1.7e9, 18.0), (-15.0, 17.0)] {
+        let mut text = String::from("time_s,qw,qx,qy,qz\n");
+        for (t, at) in rows.iter().step_by(16) {
+            let ahead = if t.seconds() < from { 40.0 } else { 40.0 + jump };
+            text += &row(format!("{:.6}", t.seconds() + ahead), at.q);
+        }
+        let set = bench.put("set.csv", &text);
+        let scored = score(&[truth, &set]);
+        assert!((scored.figure("clock_offset_s") - 40.0 - jump).abs() < 0.005, "{}", scored.said);
+        let covered = 1.0 - from / 50.0;
+        assert!((scored.figure("coverage") - covered).abs() < 0.01, "{}", scored.said);
+        assert!(scored.said.contains("the longest stretch between") && scored.figure("rms_deg") < 0.05);
+    }
+}
+
+/// The figures of `run` are those of `score` on what it wrote.
+#[test]
+fn what_a_run_says_of_its_answers_score_says_too() {
+    let bench = Bench::new();
+    let out = bench.home.path().join("flight");
+    let board = Path::new(env!("CARGO_BIN_EXE_ratetable")).parent().unwrap().join("board");
+    if !board.exists() {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "{} is not built: cargo build --workspace --bins",
+            board.display()
+        );
+        eprintln!("NOT TESTED: {} is not built", board.display());
+        return;
+    }
+    let output = Command::cargo_bin("ratetable")
+        .unwrap()
+        .args(["run", "table-1", "--for", "8s", "--speed", "max", "--json", "--to", "mpu@pty", "--out"])
+        .arg(&out)
+        .args(["--", board.to_str().unwrap(), "{}"])
+        .output()
+        .unwrap();
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+    let scored = score(&[out.to_str().unwrap(), out.join("estimate.csv").to_str().unwrap()]);
+    for field in ["rms_deg", "inclination_rms_deg", "heading_rms_deg", "max_deg"] {
+        let run = report["attitude"][field].as_f64().unwrap_or_else(|| panic!("{field}: {report}"));
+        let value = scored.figure(field);
+        assert!(
+            (value - run).abs() < 1e-6 + 1e-4 * run,
+            "{field}: run {run}, score {value}: {}",
+            scored.said
+        );
+    }
+}
