@@ -114,7 +114,7 @@ fn the_study_of_stability_writes_its_own_files() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("study");
     study(&["stability", "--quick", "--out", out.to_str().unwrap()]).assert().success();
-    assert_eq!(files(&out), ["stability.csv", "stability.svg"].map(String::from).into());
+    assert_eq!(files(&out), ["manifest.json", "stability.csv", "stability.svg"].map(String::from).into());
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn the_cost_of_a_scene_is_told_term_by_term() {
     let names: Vec<_> = terms.iter().map(|term| term["term"].as_str().unwrap()).collect();
     assert!(names[0] == "truth" && names.contains(&"white_noise"), "{names:?}");
     assert!(terms.iter().all(|term| term["ns_per_sample"].as_f64().unwrap() > 0.0));
-    assert_eq!(files(&out), ["cost.csv", "cost.svg"].map(String::from).into());
+    assert_eq!(files(&out), ["cost.csv", "cost.svg", "manifest.json"].map(String::from).into());
     let table = std::fs::read_to_string(out.join("cost.csv")).unwrap();
     assert_eq!(table.lines().next(), Some("term,ns_per_sample"));
     assert_eq!(table.lines().count(), 1 + names.len());

@@ -95,7 +95,6 @@ fn any_time() -> impl Strategy<Value = mip::imu::Time> {
         any::<(u64, u16)>().prop_map(|(ns, valid)| Time::External(ns, valid)),
         any::<(f64, u16, u16)>().prop_map(|(s, week, valid)| Time::SharedGps(s, week, valid)),
         any::<(f64, u16, u16)>().prop_map(|(s, week, valid)| Time::Gps(s, week, valid)),
-        any::<u32>().prop_map(Time::Ticks),
     ]
 }
 
