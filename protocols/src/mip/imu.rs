@@ -333,7 +333,7 @@ mod tests {
             assert_eq!(Payload::new_checked(&all[at..]).unwrap().time(), Some(time));
             assert!(Payload::new_checked(&field[..field.len() - 1]).is_err(), "cut short");
         }
-        let mut backwards = [0; 56];
+        let mut backwards = [0; 50];
         let mut at = 0;
         for (field, ..) in TIMES.into_iter().rev() {
             backwards[at..at + field.len()].copy_from_slice(field);
