@@ -65,7 +65,7 @@ impl Folder {
     /// Begins the folder `target`.
     ///
     /// # Errors
-    /// It holds something that may not be replaced, as of [`may_write`]; it is no folder, another process writes into
+    /// It holds something that may not be replaced, as of `may_write`; it is no folder, another process writes into
     /// it, or the system refuses.
     pub fn open(target: &Path, force: bool, holds: Holds) -> Result<Folder, DatasetError> {
         loop {

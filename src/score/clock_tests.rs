@@ -194,6 +194,7 @@ fn seeds() -> u64 {
 }
 
 #[test]
+#[expect(clippy::print_stderr, reason = "how many are certain is for whoever runs it with --nocapture")]
 fn an_offset_is_right_within_5_ms_or_declared_unknown() {
     let seeds = seeds();
     let cases: Vec<(usize, u64)> =

@@ -31,12 +31,12 @@ pub(super) struct Truth {
 /// The truth as it was read.
 enum Read {
     Dataset(Track, Axes),
-    File(Recorded),
+    File(Box<Recorded>),
 }
 
 /// An estimate as it was read.
 enum Given {
-    File(PathBuf, Recorded),
+    File(PathBuf, Box<Recorded>),
     Filter(&'static FilterKind, bool),
 }
 
@@ -66,7 +66,7 @@ pub(super) fn load(arguments: &Arguments, bar: &Bar) -> Result<(Truth, Vec<Sourc
     let mut sources: Vec<Source> = Vec::new();
     for ((name, given), unit) in given.into_iter().zip(units) {
         let mut source = match given {
-            Given::File(path, recorded) => file(&truth, name, &path, recorded, unit)?,
+            Given::File(path, recorded) => file(&truth, name, &path, *recorded, unit)?,
             Given::Filter(kind, with_mag) => {
                 bar.step(format!("runs {name}"));
                 run(&truth, name, kind, with_mag)?
@@ -95,7 +95,7 @@ fn truth(path: &Path, arguments: &Arguments) -> Result<Read, Refusal> {
     let is_dataset =
         path.is_dir() || (path.ends_with("truth.csv") && beside.is_some_and(|file| file.exists()));
     if !is_dataset {
-        return Ok(Read::File(score::read_as(path, &reading(arguments, Axes::default()))?));
+        return Ok(Read::File(Box::new(score::read_as(path, &reading(arguments, Axes::default()))?)));
     }
     let truth = stored::truth(path)?;
     let track = Track::new(truth.attitudes).map_err(|why| Refusal(format!("{}: {why}", path.display())))?;
@@ -118,7 +118,7 @@ fn settled(
                 let why = recorded.remarks.last().cloned().unwrap_or_default();
                 return Err(refuse(format!("{why}: a truth has one clock; cut it there")));
             }
-            let (series, remarks) = timed(recorded, unit, None).map_err(refuse)?;
+            let (series, remarks) = timed(*recorded, unit, None).map_err(refuse)?;
             (Track::of(series).map_err(|why| refuse(why.to_string()))?.with_gaps(), remarks)
         }
     };
@@ -145,7 +145,7 @@ fn estimate(name: &str, folder: Option<&Path>, axes: Axes, arguments: &Arguments
     }
     let path = if path.is_dir() { path.join("estimate.csv") } else { path.to_path_buf() };
     let recorded = score::read_as(&path, &reading(arguments, axes))?;
-    Ok(Given::File(path, recorded))
+    Ok(Given::File(path, Box::new(recorded)))
 }
 
 /// The units of the truth's times and of each estimate's.
