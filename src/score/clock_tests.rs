@@ -287,6 +287,7 @@ fn on_the_truths_own_clock_nothing_is_taken_out_and_both_figures_are_told() {
         let given = judged(*motion, &series, &Options { clock: Clock::Truth, ..options() }).unwrap().figures;
         assert_eq!(figures.errors, given.errors, "{name}");
         assert!(figures.clock_offset_s.is_none() && figures.errors.rms_deg > 0.1, "{name}: {figures:?}");
+        assert_eq!(figures.looks, None, "{name}: late is not mistaken, {figures:?}");
         let fitted = figures.fitted.unwrap_or_else(|| panic!("{name}: {figures:?}"));
         assert!((fitted.delay_ms - 120.0).abs() < 1.0 && fitted.errors.rms_deg < 0.05, "{name}: {fitted:?}");
         let given = Options { delay: Delay::Given(120_000_000), ..options() };

@@ -180,11 +180,16 @@ pub fn judge_series(
         return Err(Unjudged::NoTruth);
     };
     let mut turned = None;
-    if figures.errors.rms_deg.to_radians() > BAD {
-        look(&bench, &undone, &placed, ahead, &mut figures);
+    // What is merely late is not mistaken.
+    let fitted = figures.fitted.map_or(f64::INFINITY, |fitted| fitted.errors.rms_deg);
+    let bad = figures.errors.rms_deg.min(fitted).to_radians();
+    if bad > BAD
+        && let Some((names, rms)) = look(&bench, &undone, placed.other, ahead, bad)
+    {
+        (figures.looks, figures.looks_rms_deg) = (Some(names), Some(rms.to_degrees()));
     }
     if figures.looks.is_none() && options.align == Align::None {
-        turned = turned_frames(&bench, &series, ahead, figures.errors.rms_deg);
+        turned = turned_frames(&bench, &series, ahead);
     }
     drop((bench, undone));
     Ok(Judged {
@@ -212,7 +217,7 @@ fn figures(
         bench.errors(series, ahead, frames).map(|errors| (errors, ahead, frames))
     };
     let found = placed.delay.filter(|fit| fit.doubt.is_none());
-    let doubt = placed.delay.map_or(Some("no part of the motion is in both"), |fit| fit.doubt);
+    let doubt = placed.delay.map_or(Some("there is too little motion in both to tell"), |fit| fit.doubt);
     let out = match bench.options.delay {
         _ if placed.other => None,
         Delay::Given(ns) => Some((ns, None)),
@@ -274,9 +279,16 @@ fn undoings<'a>(series: &'a Series, others: Readings<'a>, axes: Axes) -> Vec<Und
 /// As many estimates are looked through for mistakes.
 const LOOK: usize = 300;
 
-/// Names the mistake that explains a large error, if there is one.
-fn look(bench: &Bench<'_>, undone: &[Undone<'_>], placed: &Placed, ahead: i64, figures: &mut Figures) {
-    let is_searched = bench.grid.rows().next().is_some() && !placed.other;
+/// The mistake that explains an error of `bad` rad, if there is one, and the root mean square without it, rad; on the
+/// truth's clock (not `other`) each with the delay that it has.
+fn look(
+    bench: &Bench<'_>,
+    undone: &[Undone<'_>],
+    other: bool,
+    ahead: i64,
+    bad: f64,
+) -> Option<(String, f64)> {
+    let is_searched = bench.grid.rows().next().is_some() && !other;
     let rms = |undone: &Undone<'_>| {
         let undone = (undone.thinned)(LOOK);
         let fit = if is_searched { bench.coarse_delay(&undone, 5 * STEP) } else { None };
@@ -284,25 +296,25 @@ fn look(bench: &Bench<'_>, undone: &[Undone<'_>], placed: &Placed, ahead: i64, f
         bench.rms(&undone, delay.unwrap_or(ahead))
     };
     let tried: Vec<(&str, f64)> = undone.iter().filter_map(|it| Some((it.name, rms(it)?))).collect();
-    let Some(best) = tried.iter().map(|(_, rms)| *rms).reduce(f64::min) else { return };
-    if best > BAD || best > SHARE * figures.errors.rms_deg.to_radians() {
-        return;
+    let best = tried.iter().map(|(_, rms)| *rms).reduce(f64::min)?;
+    if best > BAD || best > SHARE * bad {
+        return None;
     }
     let alike = tried.iter().filter(|(_, rms)| *rms <= ALIKE.0 * best + ALIKE.1);
     let names: Vec<&str> = alike.map(|(name, _)| *name).take(3).collect();
-    figures.looks = Some(names.join(" or "));
-    figures.looks_rms_deg = Some(best.to_degrees());
+    Some((names.join(" or "), best))
 }
 
 /// An error larger than this may be looked through for a constant rotation, deg RMS.
 const TURNED: f64 = 1.0;
 
 /// The constant rotations that explain an error: of the world alone if that does as well.
-fn turned_frames(bench: &Bench<'_>, series: &Series, ahead: i64, rms_deg: f64) -> Option<(Aligned, f64)> {
+fn turned_frames(bench: &Bench<'_>, series: &Series, ahead: i64) -> Option<(Aligned, f64)> {
+    let thin = series.thinned(LOOK * 10);
+    let (Errors { rms_deg, .. }, ..) = bench.errors(&thin, ahead, Frames::SAME)?;
     if rms_deg < TURNED {
         return None;
     }
-    let thin = series.thinned(LOOK * 10);
     let without = |align: Align| {
         let frames = bench.frames(&thin, ahead, align);
         let (errors, ..) = bench.errors(&thin, ahead, frames)?;
