@@ -69,6 +69,7 @@ impl Fit {
 /// Why no delay follows from a motion.
 pub(super) const TOO_EVEN: &str = "the motion is too even to tell a delay from a constant error";
 const TOO_LOOSE: &str = "the estimate follows the motion too loosely to tell a delay";
+const ALIKE: &str = "several delays agree alike, as those a period of vibration apart do";
 const AT_THE_END: &str = "the best agreement lies at the end of what was searched";
 
 /// Pairs of estimates, compared with the truth.
@@ -312,6 +313,7 @@ pub(super) fn near(
     if fit.doubt.is_none() {
         // The grid's chords are right to microseconds; the truth itself is exact.
         fit.delay = pairs.refine(exact, fit.delay - step / 16..fit.delay + step / 16);
+        fit.doubt = (fit.rival > WORST).then_some(ALIKE);
     }
     fit
 }
@@ -321,27 +323,37 @@ const FEW: usize = 400;
 const MANY: usize = 1500;
 /// Another dip counts if it is less than so many times as deep.
 const RIVAL: f64 = 2.0;
+/// As many dips are looked into.
+const DIPS: usize = 16;
 /// A residual that is nothing, rad/s.
 const NOTHING: f64 = 1e-4;
 
 impl Pairs {
-    /// The deepest dip on a grid of delays, and how far away the furthest that is nearly as deep is, ns.
+    /// The deepest dip within a window, and how far away the furthest that is nearly as deep is, ns. Dips are found every
+    /// `step` ns and each looked into: between two looks a narrow one may hide its depth.
     fn deepest(&self, truth: At<'_>, window: &Range<i64>, step: i64) -> Option<(i64, f64)> {
         let delays: Vec<i64> =
             (0..=(window.end - window.start) / step).map(|i| window.start + i * step).collect();
         let most = delays.iter().step_by(8).map(|&delay| self.count(truth, delay)).max()?;
         let cap = self.cap(truth, window);
-        let cost = |&delay: &i64| self.cost(truth, delay, cap, most).unwrap_or(f64::INFINITY);
-        let costs: Vec<f64> = delays.iter().map(cost).collect();
-        let best = (0..costs.len())
-            .min_by(|&a, &b| costs[a].total_cmp(&costs[b]))
-            .filter(|&i| costs[i].is_finite())?;
+        let cost = |delay: i64| self.cost(truth, delay, cap, most).unwrap_or(f64::INFINITY);
+        let costs: Vec<f64> = delays.iter().map(|&delay| cost(delay)).collect();
         let at = |i: usize| costs.get(i).copied().unwrap_or(f64::INFINITY);
-        let is_dip = |i: &usize| at(*i) <= at(*i + 1) && (*i == 0 || at(*i) <= at(*i - 1));
-        let deep = RIVAL * (costs[best] + NOTHING * NOTHING);
-        let rivals = (0..costs.len()).filter(|&i| i.abs_diff(best) > 1 && costs[i] < deep).filter(is_dip);
-        let away = rivals.map(|i| delays[i].abs_diff(delays[best])).max();
-        Some((delays[best], away.unwrap_or(0) as f64))
+        let is_dip =
+            |i: &usize| at(*i).is_finite() && at(*i) <= at(*i + 1) && (*i == 0 || at(*i) <= at(*i - 1));
+        let mut dips: Vec<usize> = (0..costs.len()).filter(is_dip).collect();
+        dips.sort_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+        dips.truncate(DIPS);
+        let look = |i: usize| {
+            let delay = golden(delays[i] - step..delays[i] + step, cost);
+            (delay, cost(delay).min(costs[i]))
+        };
+        let dips: Vec<(i64, f64)> = dips.into_iter().map(look).collect();
+        let &(best, lowest) = dips.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let deep = RIVAL * (lowest + NOTHING * NOTHING);
+        let away = dips.iter().filter(|(_, cost)| *cost < deep).map(|(delay, _)| delay.abs_diff(best)).max();
+        let away = away.filter(|away| *away > step.unsigned_abs());
+        Some((best, away.unwrap_or(0) as f64))
     }
 }
 
