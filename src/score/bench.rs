@@ -60,13 +60,8 @@ impl Bench<'_> {
         if from + settle <= t && t <= until { (self.truth)(t).map(|truth| truth.q) } else { None }
     }
 
-    /// The delay of a series on the truth's clock.
-    pub fn delay(&self, series: &Series) -> Option<Fit> {
-        delay::within(&self.grid, &|t| self.around(t), series, DELAYS, STEP)
-    }
-
-    /// The same, looked for every `step` ns only.
-    pub fn coarse_delay(&self, series: &Series, step: i64) -> Option<Fit> {
+    /// The delay of a series on the truth's clock, looked for every `step` ns.
+    pub fn delay(&self, series: &Series, step: i64) -> Option<Fit> {
         delay::within(&self.grid, &|t| self.around(t), series, DELAYS, step)
     }
 

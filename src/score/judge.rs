@@ -291,7 +291,7 @@ fn look(
     let is_searched = bench.grid.rows().next().is_some() && !other;
     let rms = |undone: &Undone<'_>| {
         let undone = (undone.thinned)(LOOK);
-        let fit = if is_searched { bench.coarse_delay(&undone, 5 * STEP) } else { None };
+        let fit = if is_searched { bench.delay(&undone, 5 * STEP) } else { None };
         let delay = fit.filter(|fit| fit.doubt.is_none()).map(|fit| fit.delay);
         bench.rms(&undone, delay.unwrap_or(ahead))
     };

@@ -75,7 +75,7 @@ pub(super) struct Undone<'a> {
 pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> Result<Placed, String> {
     match bench.options.clock {
         Clock::Sample => return Ok(Placed::on_truths(Some(Fit::EXACT))),
-        Clock::Truth => return Ok(Placed::on_truths(bench.delay(series))),
+        Clock::Truth => return Ok(Placed::on_truths(bench.delay(series, STEP))),
         Clock::Other | Clock::Auto => {}
     }
     let found = best_match(bench, series);
@@ -86,7 +86,7 @@ pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>])
     }
     if bench.options.clock == Clock::Auto && together(bench, series) {
         let note = "its times begin and end with the truth's, and are taken for them".to_string();
-        return Ok(Placed { note: Some(note), ..Placed::on_truths(bench.delay(series)) });
+        return Ok(Placed { note: Some(note), ..Placed::on_truths(bench.delay(series, STEP)) });
     }
     indifferent(bench, series, found.as_ref())
 }
@@ -170,7 +170,6 @@ fn of_a_mistake(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> 
 
 /// Where nothing tells the offset, but it makes no difference.
 fn indifferent(bench: &Bench<'_>, series: &Series, found: Option<&Match>) -> Result<Placed, String> {
-    let thin = series.thinned(LOOKED_AT);
     let offsets = match found {
         Some(found) if found.doubt == Some(Doubt::Repeats) => {
             std::iter::once(found.offset).chain(found.rivals.iter().copied()).collect()
@@ -178,7 +177,7 @@ fn indifferent(bench: &Bench<'_>, series: &Series, found: Option<&Match>) -> Res
         Some(found) if found.doubt == Some(Doubt::Unlike) => Vec::new(),
         _ => anywhere(bench, series),
     };
-    let (least, most) = spread(bench, &thin, offsets.iter().copied());
+    let (least, most) = spread(bench, series, offsets.iter().copied());
     if !offsets.is_empty() && least.is_finite() && is_alike(least, most) {
         let note =
             "its clock is not known, but whatever it is the figures are the same within 3 %".to_string();
