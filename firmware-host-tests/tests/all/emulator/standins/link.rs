@@ -13,7 +13,7 @@ use ratetable_firmware_host_tests::standin::{Clock, Make, Record, StandIn};
 
 use super::follow::BOUND_DEG;
 use super::memory::{CASES, Case, exact_deg, judge, own, settings};
-use crate::play::play_after;
+use crate::emulator::play::play_after;
 
 /// Opens what the emulator is on: a port by its path, or a connection.
 fn open(make: Make, place: &str) -> Box<dyn Port + Send> {

@@ -12,7 +12,7 @@ use ratetable::sensor::{Reading, SensorKind};
 use ratetable::session::{Outcome, Speed};
 use serde_json::Value;
 
-use crate::play::{play, readings, scene};
+use crate::emulator::play::{play, readings, scene};
 
 const CLIENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/pymavlink_client.py");
 const IMPORT: &str = "import pymavlink.mavutil, serial";

@@ -10,7 +10,7 @@ use ratetable::scene::Plan;
 use ratetable::session::{Event, Outcome, Speed};
 use ratetable_firmware_host_tests::{Board, Options, Protocol, Report, Step};
 
-use crate::play::{play, play_and_tell, scene};
+use crate::emulator::play::{play, play_and_tell, scene};
 
 /// Every sample of the scene was sent, dropped or left in the queue.
 fn check_identity(plan: &Plan, outcome: &Outcome) {

@@ -11,9 +11,9 @@ use ratetable_firmware_host_tests::board::Source;
 use ratetable_firmware_host_tests::driver::{Counts, Driver, Mount, MpuDriver};
 use ratetable_firmware_host_tests::{Board, Protocol, Sample};
 
-use crate::accuracy::Errors;
-use crate::play::{scene, stream};
-use crate::scenes::{CASES, Case, options};
+use crate::emulator::accuracy::Errors;
+use crate::emulator::play::{scene, stream};
+use crate::emulator::scenes::{CASES, Case, options};
 
 type Vector = [f64; 3];
 type Change = fn(Vector) -> Vector;

@@ -14,7 +14,7 @@ use ratetable::wire::dialogue::{Dialogue, Estimate, Said, Stage, Stamp, dialogue
 use ratetable::wire::{self, Now, Packet, Setup};
 use ratetable_firmware_host_tests::standin::{Firmware, Make, Record, Settings};
 
-use crate::play::scene;
+use crate::emulator::play::scene;
 
 /// Between two steps, µs.
 const STEP_US: u64 = 1_000;

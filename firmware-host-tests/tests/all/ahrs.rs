@@ -1,8 +1,6 @@
 //! Both estimators on error-free readings of known motions, and on wrong ones.
 
-mod common;
-
-use common::{Body, DECLINATION_RAD, LEVEL, SLOW_TURN, TILTED, TURNING};
+use super::common::{Body, DECLINATION_RAD, LEVEL, SLOW_TURN, TILTED, TURNING};
 use ratetable_firmware_host_tests::Sample;
 use ratetable_firmware_host_tests::ahrs::{Kind, Periods};
 use ratetable_firmware_host_tests::quaternion::{angle_between, to_euler};

@@ -1,5 +1,4 @@
 //! The golden vectors as values: read from the data files, one line a packet.
-#![allow(dead_code, reason = "each test file uses a part")]
 
 use ratetable_protocols::mavlink::{self, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};

@@ -6,7 +6,7 @@ use ratetable::scene::Plan;
 use ratetable::sensor::{Reading, SensorKind};
 use ratetable_firmware_host_tests::Protocol;
 
-use crate::play::{readings, scene, stream};
+use crate::emulator::play::{readings, scene, stream};
 
 /// Every message of a stream, after having made sure that the same messages written by the crate are the same bytes,
 /// with none left over.

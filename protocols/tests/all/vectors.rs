@@ -1,8 +1,6 @@
 //! Golden packets made by other implementations, both ways, and shown by the documentation.
 
-mod common;
-
-use common::{
+use super::common::{
     int, mavlink_header, mavlink_message, mip_packet, mpu_packet, msp_direction, msp_message,
     vectornav_packet, vectors,
 };

@@ -1,14 +1,12 @@
 //! The whole board over bytes, a file and a pty.
 
-mod common;
-
 use std::fs;
 use std::io::Cursor;
 use std::os::fd::OwnedFd;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use common::{Body, DECLINATION_RAD, G, TURNING};
+use super::common::{Body, DECLINATION_RAD, G, TURNING};
 use ratetable_firmware_host_tests::ahrs::Kind;
 use ratetable_firmware_host_tests::board::Source;
 use ratetable_firmware_host_tests::quaternion::angle_between;

@@ -1,5 +1,4 @@
 //! Error-free readings of a body that turns at a constant rate, worked out here in closed form.
-#![allow(dead_code, reason = "each test file uses a part")]
 
 use ratetable_firmware_host_tests::Sample;
 use ratetable_firmware_host_tests::quaternion::{about, conj, from_euler, mul, rotate};

@@ -1,6 +1,6 @@
 //! What a rate table, a thermal chamber and a centrifuge find out of a part: only readings are looked at.
 
-use crate::sheet::{Axes, G};
+use super::sheet::{Axes, G};
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::Plan;
 use ratetable::sensor::{SensorKind, TERMS};

@@ -7,8 +7,8 @@ use ratetable::scene::Plan;
 use ratetable_firmware_host_tests::ahrs::Kind;
 use ratetable_firmware_host_tests::{Options, Protocol};
 
-use crate::accuracy::{Deg, Errors};
-use crate::play::{play_to_board, scene};
+use crate::emulator::accuracy::{Deg, Errors};
+use crate::emulator::play::{play_to_board, scene};
 
 /// A scene, an estimator, and what the sensor errors of the one leave the other.
 pub struct Case {

@@ -24,8 +24,8 @@ macro_rules! case {
     ($name:literal, $in_enu_flu:expr) => {
         Case {
             name: $name,
-            scene: include_str!(concat!("reference/", $name, ".toml")),
-            truth: include_str!(concat!("reference/", $name, ".csv")),
+            scene: include_str!(concat!("../reference/", $name, ".toml")),
+            truth: include_str!(concat!("../reference/", $name, ".csv")),
             in_enu_flu: $in_enu_flu,
         }
     };

@@ -4,7 +4,7 @@ use ratetable::scene::Plan;
 use ratetable::sensor::{Reading, SensorKind};
 use ratetable_firmware_host_tests::Protocol;
 
-use crate::play::{readings, scene, stream};
+use crate::emulator::play::{readings, scene, stream};
 
 /// CRC-16/IBM-3740, bit by bit.
 fn crc(bytes: &[u8]) -> u16 {

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-const PAGE: &str = include_str!("../docs/howto/cluster.md");
+const PAGE: &str = include_str!("../../docs/howto/cluster.md");
 const SCENE: &str = r#"
 duration = "0.5 s"
 [gyro]

@@ -1,7 +1,7 @@
 //! A page's blocks, run one after another in a folder of its own.
 
-use crate::block::{Block, Exit, Marks, Page};
-use crate::compare::compare;
+use super::block::{Block, Exit, Marks, Page};
+use super::compare::compare;
 use std::env;
 use std::ffi::OsString;
 use std::fs;

@@ -1,6 +1,6 @@
 //! What a page quotes against what was said.
 
-use crate::block::Numbers;
+use super::block::Numbers;
 
 /// Anything may stand for this: a line of it alone for any lines, at the end of a line for the rest of it.
 const ANYTHING: &str = "…";

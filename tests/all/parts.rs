@@ -1,6 +1,6 @@
 //! Every line of every datasheet, measured on the emulated part, and `docs/parts.md`, which says so.
 //!
-//! `RATETABLE_WRITE=1 cargo test --test parts` writes the page.
+//! `RATETABLE_WRITE=1 cargo test --test all parts::` writes the page.
 
 mod bench;
 mod document;
@@ -36,7 +36,7 @@ fn every_line_of_every_datasheet_is_met_and_the_page_says_so() {
     let committed = fs::read_to_string(PAGE).unwrap_or_default();
     assert!(
         committed == page,
-        "docs/parts.md is not what was measured: RATETABLE_WRITE=1 cargo test --test parts"
+        "docs/parts.md is not what was measured: RATETABLE_WRITE=1 cargo test --test all parts::"
     );
 }
 

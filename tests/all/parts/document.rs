@@ -3,8 +3,8 @@
 //! No figure in it is a random one: it says what the sheet has, what the part's file has, between which bounds, that
 //! follow from how much was measured, the measurement must lie, and whether it does.
 
-use crate::bench::{self, NOISE_SAMPLES, SPECIMENS, Specimen};
-use crate::sheet::{Axes, Sheet};
+use super::bench::{self, NOISE_SAMPLES, SPECIMENS, Specimen};
+use super::sheet::{Axes, Sheet};
 use ratetable::scene;
 use ratetable::sensor::SensorKind;
 use ratetable::sensor::parts::{self, Part};
@@ -205,9 +205,9 @@ const HEAD: &str = "# Parts, line by line
 
 What the datasheets say, what the emulator is set to, and whether it does it. Made by
 
-    RATETABLE_WRITE=1 cargo test --test parts
+    RATETABLE_WRITE=1 cargo test --test all parts::
 
-and checked by the same test without the variable: every line is measured again, and this page is what comes of it. The figures of the sheets are a copy of their own ([tests/parts/sheets.toml](../tests/parts/sheets.toml)), apart from the parts' files ([src/sensor/parts](../src/sensor/parts)); a sheet or a file that is a fifth off fails on its line. Of the filters there is the one copy in the parts' files; that each of them has the bandwidth it says is measured here, at the rate it belongs to. Only readings are looked at: SPECIMENS specimens of each part, each with a seed of its own, in free fall, at rest, turned and pushed along each axis at half of full scale, and warmed by 40 K; each line with its own error term alone. `ratetable list parts` has the same sources, and the output data rates.
+and checked by the same test without the variable: every line is measured again, and this page is what comes of it. The figures of the sheets are a copy of their own ([tests/all/parts/sheets.toml](../tests/all/parts/sheets.toml)), apart from the parts' files ([src/sensor/parts](../src/sensor/parts)); a sheet or a file that is a fifth off fails on its line. Of the filters there is the one copy in the parts' files; that each of them has the bandwidth it says is measured here, at the rate it belongs to. Only readings are looked at: SPECIMENS specimens of each part, each with a seed of its own, in free fall, at rest, turned and pushed along each axis at half of full scale, and warmed by 40 K; each line with its own error term alone. `ratetable list parts` has the same sources, and the output data rates.
 
 Tolerances are taken as the ends of a uniform distribution. A value whose source begins with *assumed* has no line: the sheet does not have it.
 

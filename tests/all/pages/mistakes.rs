@@ -79,7 +79,7 @@ fn wrong(page: &str) -> Vec<String> {
     faults.collect()
 }
 
-const PAGE: &str = include_str!("../../docs/scene.md");
+const PAGE: &str = include_str!("../../../docs/scene.md");
 
 #[test]
 fn each_message_of_the_table_of_typical_mistakes_is_what_is_said() {
