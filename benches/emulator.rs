@@ -39,7 +39,8 @@ fn samples(criterion: &mut Criterion) {
             bencher.iter(|| {
                 let mut sum = 0.0;
                 let _ = Player::new(&plan, plan.duration, BLOCK).play(|moment| {
-                    sum += moment.readings.iter().map(|reading| reading.value.v.x).sum::<f64>();
+                    sum +=
+                        moment.readings.iter().map(|reading| reading.body().unwrap().value.v.x).sum::<f64>();
                     Ok::<(), Infallible>(())
                 });
                 black_box(sum)

@@ -8,11 +8,14 @@ mod feed;
 pub use feed::Feed;
 
 use crate::earth::Place;
-use crate::geometry::{Body, Vector};
+use crate::geometry::{Body, Nav, Vector};
 use crate::motion::{Trajectory, Truth};
 use crate::scene::Plan;
 use crate::schedule::{Due, Schedule, Ticks};
-use crate::sensor::{Block, Fix, REFERENCE_TEMPERATURE, Reading, Sensor, SensorKind};
+use crate::sensor::{
+    Block, Fix, Measured, Measurement, Position, REFERENCE_TEMPERATURE, Reading, Senses, Sensor, SensorKind,
+    Shape,
+};
 use crate::time::SimTime;
 
 /// How many distinct ticks a block holds unless told otherwise.
@@ -172,40 +175,57 @@ impl Channel {
     }
 
     fn reading(&self, sensor: usize, i: usize) -> Reading {
-        let at = |columns: &[Vec<f64>; 3]| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
+        let Block { reading, truth, bias, .. } = &self.block;
+        let measurement = match self.kind.shape() {
+            Shape::Triad => Measurement::Triad(Measured {
+                value: at::<Body>(reading, i),
+                truth: at(truth, i),
+                bias: at(bias, i),
+            }),
+            Shape::Pressure => {
+                Measurement::Pressure(Measured { value: reading[0][i], truth: truth[0][i], bias: bias[0][i] })
+            }
+            Shape::Position => Measurement::Position(self.position(i)),
+        };
         Reading {
             sensor,
             kind: self.kind,
             k: self.done + i as u64,
-            value: at(&self.block.reading),
-            truth: at(&self.block.truth),
-            bias: at(&self.block.bias),
+            measurement,
             clipped: self.block.clipped[i],
             temperature: self.block.temperature.get(i).copied().unwrap_or(REFERENCE_TEMPERATURE),
-            fix: (self.kind == SensorKind::Gps).then(|| self.fix(i)),
         }
     }
 
     /// What a receiver says at a sample, which its block has as metres from the origin.
-    fn fix(&self, i: usize) -> Fix {
-        let at = |columns: &[Vec<f64>; 3]| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
-        Fix {
-            position: self.origin.moved(at(&self.block.reading)),
-            velocity: at(&self.block.velocity),
-            true_position: self.origin.moved(at(&self.block.truth)),
-            true_velocity: at(&self.block.true_velocity),
+    fn position(&self, i: usize) -> Position {
+        let displacement = Measured::<Vector<Nav>> {
+            value: at(&self.block.reading, i),
+            truth: at(&self.block.truth, i),
+            bias: at(&self.block.bias, i),
+        };
+        let fix = |moved, velocity| Fix { position: self.origin.moved(moved), velocity: at(velocity, i) };
+        Position {
+            displacement,
+            fix: fix(displacement.value, &self.block.velocity),
+            true_fix: fix(displacement.truth, &self.block.true_velocity),
         }
     }
 }
 
-/// What an error-free sensor of this kind reads, in its unit; nothing of one whose truth is a position, which does not
-/// follow from the truth of an instant.
+/// The sample of three columns, in the frame that they are in.
+fn at<F>(columns: &[Vec<f64>; 3], i: usize) -> Vector<F> {
+    Vector::new(columns[0][i], columns[1][i], columns[2][i])
+}
+
+/// What an error-free sensor of this kind reads, in its unit; nothing of one that senses more than the truth of an
+/// instant.
 pub fn sensed(kind: SensorKind, truth: &Truth) -> Vector<Body> {
-    match kind {
-        SensorKind::Gyro => truth.rate,
-        SensorKind::Accel => truth.force,
-        SensorKind::Mag => truth.field,
-        SensorKind::Baro | SensorKind::Gps => Vector::ZERO,
+    match kind.row().senses {
+        Senses::Rate => truth.rate,
+        Senses::Force => truth.force,
+        Senses::Field => truth.field,
+        Senses::Course | Senses::Air(_) => Vector::ZERO,
     }
 }
 

@@ -5,7 +5,6 @@
 //! white noise → range → resolution → reading.
 //! To add a term: one file beside this one and one line in [`TERMS`].
 
-mod aid;
 mod bias;
 mod bias_instability;
 mod bias_temperature;
@@ -19,6 +18,7 @@ mod flicker;
 mod g_sensitivity;
 mod hard_iron;
 mod kind;
+mod kinds;
 mod lever_arm;
 mod linear;
 mod matrix;
@@ -26,6 +26,7 @@ pub mod mount;
 mod nonlinearity;
 pub mod parts;
 mod range;
+mod reading;
 mod resolution;
 mod scale_temperature;
 mod soft_iron;
@@ -36,23 +37,23 @@ mod vibration;
 mod wander;
 pub mod white_noise;
 
-pub use aid::{Claims, Fix, sea_level_pressure};
 pub use bias::settle as settle_bias;
 pub use bias_walk::step as bias_step;
 pub use block::{Block, Column};
 pub use clock_error::{clock, jitter};
 pub use delay::delay;
 pub use fault::{Fault, FaultKind};
-pub use kind::{ByKind, SensorKind};
+pub use kind::{Air, ByKind, Claims, Derived, InAir, Row, Senses, SensorKind, Shape, Shown, Table};
+pub use kinds::Kinds;
 pub use lever_arm::{at_arm, lever_arm};
 pub use matrix::matrix;
 pub use mount::Mount;
 pub use range::limits;
+pub use reading::{Fix, Measured, Measurement, Position, Reading};
 pub use resolution::lsb;
 pub use temperature::REFERENCE as REFERENCE_TEMPERATURE;
 pub use units::Units;
 
-use crate::geometry::{Body, Vector};
 use crate::keys::{Key, KeyError, Values};
 use crate::os;
 use crate::random::{self, Normals, Stream};
@@ -107,49 +108,6 @@ impl SensorPlan {
             sampling: self.sampling,
             mount,
             seed,
-        }
-    }
-}
-
-/// One sensor's output, in body axes (Forward-Right-Down) and the sensor's unit. Of a barometer the pressure stands
-/// for x; of a GPS receiver the three are metres north, east and down of the start, and `fix` has what it says.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
-    /// Which of the plan's sensors.
-    pub sensor: usize,
-    /// What is sensed.
-    pub kind: SensorKind,
-    /// Which tick of that sensor.
-    pub k: u64,
-    /// What the part reads.
-    pub value: Vector<Body>,
-    /// The error-free reading.
-    pub truth: Vector<Body>,
-    /// The bias in effect.
-    pub bias: Vector<Body>,
-    /// Whether the value left the range.
-    pub clipped: bool,
-    /// The part's temperature, °C.
-    pub temperature: f64,
-    /// Of a GPS receiver.
-    pub fix: Option<Fix>,
-}
-
-impl Reading {
-    /// A reading of zero, where only its being there matters.
-    pub fn zero(sensor: usize, kind: SensorKind) -> Reading {
-        let zero = Vector::ZERO;
-        let temperature = REFERENCE_TEMPERATURE;
-        Reading {
-            sensor,
-            kind,
-            k: 0,
-            value: zero,
-            truth: zero,
-            bias: zero,
-            clipped: false,
-            temperature,
-            fix: None,
         }
     }
 }
@@ -226,6 +184,8 @@ pub struct TermKind {
     pub name: &'static str,
     /// One line for the docs.
     pub about: &'static str,
+    /// Which kinds of sensor can have it.
+    pub serves: Kinds,
     /// Where it acts.
     pub stage: Stage,
     /// What it needs of the truth besides the error-free reading.
@@ -256,16 +216,16 @@ pub static TERMS: [&TermKind; 21] = [
     &bias_temperature::KIND,
     &g_sensitivity::KIND,
     &white_noise::KIND,
-    &aid::VELOCITY_NOISE,
+    &kind::VELOCITY_NOISE,
     &range::KIND,
     &resolution::KIND,
 ];
 
-/// Every key of a sensor: its error terms', then those of an aid's own.
+/// Every key of a sensor: its error terms', then its kind's own.
 pub fn keys(sensor: SensorKind) -> Vec<Key> {
-    let terms = TERMS.iter().filter(|term| aid::concerns(sensor, term.name));
-    let keys = terms.flat_map(|term| (term.keys)(sensor)).map(|key| aid::turned(sensor, key));
-    keys.chain(aid::keys(sensor)).collect()
+    let terms = TERMS.iter().filter(|term| term.serves.contains(sensor));
+    let keys = terms.flat_map(|term| (term.keys)(sensor)).map(|key| sensor.turned(key));
+    keys.chain((sensor.row().keys)()).collect()
 }
 
 /// Everything wrong with a plan's values.

@@ -25,7 +25,7 @@ use crate::earth::{Day, Place, STANDARD_GRAVITY, default_field};
 use crate::geometry::{Attitude, Axes, Body, Vector};
 use crate::motion::Truth;
 use crate::schedule::{Schedule, Ticks};
-use crate::sensor::{ByKind, Fix, Reading, SensorKind, SensorPlan};
+use crate::sensor::{ByKind, Fix, Measured, Measurement, Position, Reading, SensorKind, SensorPlan, Shape};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
 
@@ -281,7 +281,7 @@ pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
     let value = Vector::new(DIGITS, DIGITS, DIGITS);
     let position = Place { latitude: DIGITS, longitude: DIGITS, altitude: DIGITS };
     let velocity = Vector::new(DIGITS, DIGITS, DIGITS);
-    let fix = Fix { position, velocity, true_position: position, true_velocity: velocity };
+    let fix = Fix { position, velocity };
     let seconds = 10;
     let ticks = setup.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
     let mut encoder = encoder(protocol, setup);
@@ -291,8 +291,13 @@ pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
         readings.clear();
         let sensors = setup.sensors.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1);
         readings.extend(sensors.map(|(i, plan)| Reading {
-            value,
-            fix: (plan.kind == SensorKind::Gps).then_some(fix),
+            measurement: match plan.kind.shape() {
+                Shape::Triad => Measurement::Triad(Measured { value, ..Measured::default() }),
+                Shape::Pressure => Measurement::Pressure(Measured { value: DIGITS, ..Measured::default() }),
+                Shape::Position => {
+                    Measurement::Position(Position { displacement: Measured::default(), fix, true_fix: fix })
+                }
+            },
             ..Reading::zero(i, plan.kind)
         }));
         packets.clear();
@@ -334,6 +339,16 @@ impl EverySecond {
         self.next = SimTime(first.0 + count * NANOS);
         (0..count).map(move |i| SimTime(first.0 + i * NANOS))
     }
+}
+
+/// What a sensor of this kind read last, in body axes.
+fn body(newest: &ByKind<Option<Reading>>, kind: SensorKind) -> Option<Vector<Body>> {
+    newest[kind as usize].as_ref()?.body().map(|body| body.value)
+}
+
+/// The pressure that a sensor of this kind read last, Pa.
+fn pressure(newest: &ByKind<Option<Reading>>, kind: SensorKind) -> Option<f64> {
+    newest[kind as usize].as_ref()?.pressure().map(|pressure| pressure.value)
 }
 
 /// The newest sample of each sensor, for packets that carry several.

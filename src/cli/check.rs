@@ -8,7 +8,7 @@ use super::budget::Budget;
 use super::{Refusal, Verdict, generate, options, say};
 use crate::motion::method::Choice;
 use crate::scene::{Drawn, Plan, Reference, Runs};
-use crate::sensor::{SensorKind, SensorPlan, TERMS, lsb, white_noise};
+use crate::sensor::{SensorPlan, TERMS, lsb, white_noise};
 use crate::wire;
 
 #[derive(Debug, clap::Args)]
@@ -85,17 +85,6 @@ fn noise(sensor: &SensorPlan) -> Option<Noise> {
     })
 }
 
-/// What a reading and its random walk are shown in: degrees are easier to judge than radians.
-fn shown(kind: SensorKind) -> (&'static str, &'static str, f64) {
-    match kind {
-        SensorKind::Gyro => ("deg/s", "deg/√s", 1f64.to_degrees()),
-        SensorKind::Accel => ("m/s²", "m/s/√s", 1.0),
-        SensorKind::Mag => ("µT", "µT·√s", 1.0),
-        SensorKind::Baro => ("Pa", "Pa·√s", 1.0),
-        SensorKind::Gps => ("m", "m·√s", 1.0),
-    }
-}
-
 fn terms(plan: &Plan, sensor: &SensorPlan) -> Vec<&'static str> {
     plan.build(sensor).terms().to_vec()
 }
@@ -109,8 +98,10 @@ fn budgets(plan: &Plan) -> Vec<Budget> {
 fn warnings(plan: &Plan) -> Vec<String> {
     let mut warnings = plan.warnings.clone();
     for sensor in &plan.sensors {
-        let may_repeat = sensor.kind == SensorKind::Gps;
-        if !may_repeat && noise(sensor).is_none() && lsb(&sensor.values, sensor.kind).is_none() {
+        if !sensor.kind.row().may_repeat
+            && noise(sensor).is_none()
+            && lsb(&sensor.values, sensor.kind).is_none()
+        {
             warnings.push(format!(
                 "{} has neither noise nor resolution: while the vehicle is still its readings repeat, and a flight controller takes such a sensor for dead (PX4: 100 equal values in a row)",
                 sensor.kind

@@ -175,7 +175,7 @@ fn draw(plan: &Plan, figure: &Figure) -> String {
         figure.series.iter().map(|series| series.points.iter().copied().unzip()).collect();
     let readings: Vec<_> = (0..figure.series.len()).filter(|&i| !figure.series[i].is_truth).collect();
     let line = |i: usize| Line {
-        name: figure.series[i].label,
+        name: &figure.series[i].label,
         x: &columns[i].0,
         y: &columns[i].1,
         kind: if figure.series[i].is_truth && !readings.is_empty() {
@@ -186,7 +186,7 @@ fn draw(plan: &Plan, figure: &Figure) -> String {
     };
     let stacked = if !readings.is_empty() {
         let pair = |(k, &i): (usize, &usize)| {
-            panel(figure, figure.series[i].label, vec![line(i), line(readings.len() + k)])
+            panel(figure, &figure.series[i].label, vec![line(i), line(readings.len() + k)])
         };
         readings.iter().enumerate().map(pair).collect()
     } else {

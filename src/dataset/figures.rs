@@ -7,8 +7,9 @@ use super::table;
 use crate::geometry::Axes;
 use crate::player::Moment;
 use crate::scene::Plan;
-use crate::sensor::SensorKind;
+use crate::sensor::{Measured, Measurement, Position, SensorKind, Shown};
 use crate::time::SimTime;
+use std::borrow::Cow;
 
 /// Stretches of time that a line is kept by: twice the pixels of a chart's width.
 const STRETCHES: i64 = 2000;
@@ -32,7 +33,7 @@ pub struct Figure {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     /// Such as `x`.
-    pub label: &'static str,
+    pub label: Cow<'static, str>,
     /// Time in s and value in the figure's unit: every sample of a short scene, of a long one those that show. Where
     /// samples are missing stands one that is no number.
     pub points: Vec<(f64, f64)>,
@@ -81,17 +82,20 @@ impl Figures {
         let truth = table::truth(self.axes, moment.truth);
         self.put(self.figures.len() - 1, moment.t, &truth[4..7], f64::to_degrees);
         for reading in moment.readings {
-            let in_unit = match reading.kind {
-                SensorKind::Gyro => f64::to_degrees,
-                SensorKind::Baro => |pascals| pascals / 100.0,
-                _ => |value| value,
-            };
-            let values = match reading.kind {
-                SensorKind::Baro => vec![reading.value.v.x, reading.truth.v.x],
-                SensorKind::Gps => [reading.value, reading.truth].map(|v| v.v.to_array()).concat(),
-                _ => table::reading(self.axes, reading).values()[..6].to_vec(),
-            };
-            self.put(reading.sensor, moment.t, &values, in_unit);
+            let in_unit = reading.kind.row().shown.in_chart;
+            match &reading.measurement {
+                Measurement::Triad(_) => {
+                    let row = table::reading(self.axes, reading);
+                    self.put(reading.sensor, moment.t, &row.values()[..6], in_unit);
+                }
+                Measurement::Pressure(Measured { value, truth, .. }) => {
+                    self.put(reading.sensor, moment.t, &[*value, *truth], in_unit);
+                }
+                Measurement::Position(Position { displacement: Measured { value, truth, .. }, .. }) => {
+                    let values = [value.v, truth.v].map(|v| v.to_array()).concat();
+                    self.put(reading.sensor, moment.t, &values, in_unit);
+                }
+            }
         }
     }
 
@@ -148,28 +152,18 @@ impl Stretch {
 }
 
 fn of_sensor(kind: SensorKind) -> Figure {
-    let (title, y_label) = match kind {
-        SensorKind::Gyro => ("Gyroscope", "angular rate (deg/s)"),
-        SensorKind::Accel => ("Accelerometer", "specific force (m/s²)"),
-        SensorKind::Mag => ("Magnetometer", "magnetic field (µT)"),
-        SensorKind::Baro => ("Barometer", "pressure (hPa)"),
-        SensorKind::Gps => ("GPS position from the start", "displacement (m)"),
-    };
-    let (read, truth): (&[_], &[_]) = match kind {
-        SensorKind::Baro => (&["pressure"], &["true pressure"]),
-        SensorKind::Gps => (&["north", "east", "down"], &["true north", "true east", "true down"]),
-        _ => (&["x", "y", "z"], &["true x", "true y", "true z"]),
-    };
-    let read = read.iter().map(|label| line(label, false));
-    let series = read.chain(truth.iter().map(|label| line(label, true))).collect();
-    Figure { file_stem: kind.name(), title, y_label, series, wraps: false }
+    let Shown { title, label, .. } = &kind.row().shown;
+    let read = kind.axes().iter().map(|axis| line((*axis).into(), false));
+    let truth = kind.axes().iter().map(|axis| line(format!("true {axis}").into(), true));
+    let series = read.chain(truth).collect();
+    Figure { file_stem: kind.name(), title, y_label: label, series, wraps: false }
 }
 
 fn of_angles() -> Figure {
-    let series = ["roll", "pitch", "yaw"].map(|label| line(label, true)).into();
+    let series = ["roll", "pitch", "yaw"].map(|label| line(label.into(), true)).into();
     Figure { file_stem: "angles", title: "Reference angles", y_label: "angle (deg)", series, wraps: true }
 }
 
-fn line(label: &'static str, is_truth: bool) -> Series {
+fn line(label: Cow<'static, str>, is_truth: bool) -> Series {
     Series { label, points: Vec::new(), is_truth }
 }

@@ -70,7 +70,8 @@ enum Shape {
     Gyro,
     Accel,
     Mag,
-    Baro,
+    /// Of the topic with this name.
+    Pressure(&'static str),
     Gps,
     Attitude(&'static str),
 }
@@ -91,7 +92,7 @@ impl Shape {
             Shape::Mag => {
                 with_errors(Some(("/imu/mag", Kind::MagneticField)), ["/imu/mag/true", "/imu/mag/bias"])
             }
-            Shape::Baro => vec![("/baro", Kind::FluidPressure)],
+            Shape::Pressure(topic) => vec![(topic, Kind::FluidPressure)],
             Shape::Gps => vec![("/gps/fix", Kind::NavSatFix), ("/gps/velocity", Kind::Vector)],
             Shape::Attitude("estimate") => vec![("/estimate", Kind::Quaternion)],
             Shape::Attitude(_) => vec![("/reference", Kind::Quaternion)],
@@ -119,7 +120,7 @@ fn shapes(plan: &Plan, tables: &[Table]) -> Vec<Shape> {
         (SensorKind::Accel, true) => Shape::Both,
         (SensorKind::Accel, false) => Shape::Accel,
         (SensorKind::Mag, _) => Shape::Mag,
-        (SensorKind::Baro, _) => Shape::Baro,
+        (SensorKind::Baro, _) => Shape::Pressure("/baro"),
         (SensorKind::Gps, _) => Shape::Gps,
     };
     let readings = plan.sensors.iter().map(sensor);
@@ -241,7 +242,7 @@ impl Writer for Mcap {
                 magnetic_field(in_body, first, bytes);
                 self.send(table, 0, t)?;
             }
-            Shape::Baro => {
+            Shape::Pressure(_) => {
                 fluid_pressure(in_body, values[0], bytes);
                 return self.send(table, 0, t);
             }

@@ -6,7 +6,7 @@ use super::manifest::{self, FileEntry};
 use super::reference::Quality;
 use crate::geometry::{Attitude, Axes};
 use crate::scene::Plan;
-use crate::sensor::{SensorKind, SensorPlan};
+use crate::sensor::{SensorKind, SensorPlan, Shape};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -25,14 +25,8 @@ pub(super) fn conventions(plan: &Plan) -> BTreeMap<&'static str, String> {
         ),
     };
     let at_rest = at_rest(plan);
-    let aids = plan.sensors.iter().filter_map(|sensor| match sensor.kind {
-        SensorKind::Baro => Some(("pressure", "of the air, absolute, Pa".to_string())),
-        SensorKind::Gps => Some((
-            "position",
-            "WGS 84: geodetic latitude and longitude, deg, north and east positive; altitude above the ellipsoid, m; velocity north, east and down (whatever the nav frame), m/s".to_string(),
-        )),
-        _ => None,
-    });
+    let own = plan.sensors.iter().filter_map(|sensor| sensor.kind.row().table.convention);
+    let own = own.map(|(subject, what)| (subject, what.to_string()));
     let common = BTreeMap::from([
         ("nav_frame", format!("{nav}, local level")),
         ("body_frame", body.to_string()),
@@ -52,7 +46,7 @@ pub(super) fn conventions(plan: &Plan) -> BTreeMap<&'static str, String> {
         ("magnetic_field", "in body axes, uT".to_string()),
         ("time", "t_ns: whole nanoseconds from the scene's start".to_string()),
     ]);
-    common.into_iter().chain(aids).collect()
+    common.into_iter().chain(own).collect()
 }
 
 /// What an error-free accelerometer reads level (roll and pitch 0) and at rest, as the scene's axes write it.
@@ -143,19 +137,10 @@ fn files_section(plan: &Plan, files: &[FileEntry]) -> String {
 - Numbers written as text are in the shortest form that reads back to the same double.
 ",
     );
-    let has = |kind| plan.sensors.iter().any(|sensor| sensor.kind == kind);
-    if has(SensorKind::Baro) {
-        text.push_str(
-            "- `baro`: the pressure that it reads, the error-free one and the bias in effect; the altitude at which the
-  standard atmosphere of 1976 has the pressure read (geopotential, 1013.25 hPa at 0); and the part's temperature.
-",
-        );
-    }
-    if has(SensorKind::Gps) {
-        text.push_str(
-            "- `gps`: position and velocity as the receiver says them, then the true ones.
-",
-        );
+    for kind in plan.sensors.iter().map(|sensor| sensor.kind) {
+        if let Some(note) = kind.row().table.note {
+            let _ = writeln!(text, "- `{kind}`: {note}");
+        }
     }
     if kalibr::text(plan).is_some() {
         text.push_str("- `imu.yaml`: white noise and bias random walk of gyroscope and accelerometer as Kalibr takes them.\n");
@@ -257,10 +242,10 @@ q = np.column_stack([truth[c] for c in (\"qw\", \"qx\", \"qy\", \"qz\")])
 "
     );
     for kind in plan.sensors.iter().map(|sensor| sensor.kind) {
-        let readings = match kind {
-            SensorKind::Baro => "baro[\"pressure_pa\"]".into(),
-            SensorKind::Gps => "gps[\"lat_deg\"], gps[\"lon_deg\"], gps[\"alt_m\"]".into(),
-            _ => format!("xyz({kind})"),
+        let readings = match kind.shape() {
+            Shape::Pressure => format!("{kind}[\"pressure_pa\"]"),
+            Shape::Position => format!("{kind}[\"lat_deg\"], {kind}[\"lon_deg\"], {kind}[\"alt_m\"]"),
+            Shape::Triad => format!("xyz({kind})"),
         };
         let _ = writeln!(text, "{kind} = load(\"{kind}\")    # times {kind}[\"t_ns\"], readings {readings}");
     }

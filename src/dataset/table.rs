@@ -1,10 +1,9 @@
 //! The tables of a dataset: their columns, and a row of each in the scene's axes.
 
-use crate::earth::{Place, pressure_altitude};
-use crate::geometry::{Attitude, Axes, Body, Euler, Nav, Vector};
+use crate::geometry::{Attitude, Axes, Body, Euler, Vector};
 use crate::motion::Truth;
 use crate::scene::Plan;
-use crate::sensor::{Fix, Reading, SensorKind};
+use crate::sensor::{Fix, Measured, Measurement, Reading, SensorKind, Shape};
 
 /// A column: its name, which ends in its unit, and the unit by itself.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
@@ -28,14 +27,9 @@ pub struct Table {
 pub(super) const TRUTH: usize = 0;
 
 const QUATERNION: [(&str, &str); 4] = [("qw", "1"), ("qx", "1"), ("qy", "1"), ("qz", "1")];
-/// A barometer's, and what follows from the pressure that it reads.
-const BARO: [(&str, &str); 5] = [
-    ("pressure_pa", "Pa"),
-    ("true_pressure_pa", "Pa"),
-    ("bias_pa", "Pa"),
-    ("pressure_altitude_m", "m"),
-    ("temperature_degc", "degC"),
-];
+/// Of a pressure; what follows from it comes before the temperature.
+const PRESSURE: [(&str, &str); 3] = [("pressure_pa", "Pa"), ("true_pressure_pa", "Pa"), ("bias_pa", "Pa")];
+const TEMPERATURE: (&str, &str) = ("temperature_degc", "degC");
 /// A receiver's fix: position, then velocity north, east and down, whatever the scene's axes.
 const FIX: [(&str, &str); 6] = [
     ("lat_deg", "deg"),
@@ -67,13 +61,16 @@ fn truth_table() -> Table {
 }
 
 fn sensor_table(kind: SensorKind) -> Table {
-    let columns: Vec<Column> = match kind {
-        SensorKind::Baro => BARO.map(column).into(),
-        SensorKind::Gps => ["", "true_"]
+    let columns: Vec<Column> = match kind.shape() {
+        Shape::Pressure => {
+            let derived = kind.row().table.derived.iter().map(|derived| (derived.column, derived.unit));
+            PRESSURE.into_iter().chain(derived).chain([TEMPERATURE]).map(column).collect()
+        }
+        Shape::Position => ["", "true_"]
             .into_iter()
             .flat_map(|prefix| FIX.map(|(of, unit)| Column { name: format!("{prefix}{of}"), unit }))
             .collect(),
-        _ => ["", "true_", "bias_"].into_iter().flat_map(|prefix| triple(prefix, kind)).collect(),
+        Shape::Triad => ["", "true_", "bias_"].into_iter().flat_map(|prefix| triple(prefix, kind)).collect(),
     };
     table(kind.name(), columns)
 }
@@ -108,52 +105,48 @@ pub(super) fn reference(axes: Axes, attitude: Attitude) -> [f64; 7] {
     [q.w, q.x, q.y, q.z, roll, pitch, yaw]
 }
 
-/// A row of a sensor after `t_ns`.
-pub(super) enum Row {
-    /// Reading, truth and bias.
-    Triad([f64; 9]),
-    Baro([f64; 5]),
-    Gps([f64; 12]),
+/// A row of a sensor after `t_ns`: as many numbers as its table has columns.
+pub(super) struct Row {
+    values: [f64; 12],
+    len: usize,
 }
 
 impl Row {
+    fn of(numbers: impl IntoIterator<Item = f64>) -> Row {
+        let mut row = Row { values: [0.0; 12], len: 0 };
+        for number in numbers {
+            row.values[row.len] = number;
+            row.len += 1;
+        }
+        row
+    }
+
     /// Its numbers.
     pub fn values(&self) -> &[f64] {
-        match self {
-            Row::Triad(values) => values,
-            Row::Baro(values) => values,
-            Row::Gps(values) => values,
-        }
+        &self.values[..self.len]
     }
 }
 
 /// A row of a sensor after `t_ns`.
 pub(super) fn reading(axes: Axes, reading: &Reading) -> Row {
-    match (reading.kind, &reading.fix) {
-        (SensorKind::Baro, _) => {
-            let (value, temperature) = (reading.value.v.x, reading.temperature);
-            let altitude = pressure_altitude(value);
-            Row::Baro([value, reading.truth.v.x, reading.bias.v.x, altitude, temperature])
+    match &reading.measurement {
+        Measurement::Triad(Measured { value, truth, bias }) => {
+            let vector = |v: &Vector<Body>| axes.body_out(*v).to_array();
+            Row::of([value, truth, bias].map(vector).into_iter().flatten())
         }
-        (_, Some(Fix { position, velocity, true_position, true_velocity })) => {
-            let [lat, lon, alt, vn, ve, vd] = fix(*position, *velocity);
-            let [tlat, tlon, talt, tvn, tve, tvd] = fix(*true_position, *true_velocity);
-            Row::Gps([lat, lon, alt, vn, ve, vd, tlat, tlon, talt, tvn, tve, tvd])
+        Measurement::Pressure(Measured { value, truth, bias }) => {
+            let derived = reading.kind.row().table.derived.as_ref().map(|derived| (derived.of)(*value));
+            Row::of([*value, *truth, *bias].into_iter().chain(derived).chain([reading.temperature]))
         }
-        _ => Row::Triad(triad(axes, reading)),
+        Measurement::Position(position) => {
+            Row::of([position.fix, position.true_fix].map(fix).into_iter().flatten())
+        }
     }
 }
 
-fn fix(position: Place, velocity: Vector<Nav>) -> [f64; 6] {
+fn fix(Fix { position, velocity }: Fix) -> [f64; 6] {
     let [vn, ve, vd] = velocity.v.to_array();
     [position.latitude.to_degrees(), position.longitude.to_degrees(), position.altitude, vn, ve, vd]
-}
-
-fn triad(axes: Axes, reading: &Reading) -> [f64; 9] {
-    let vector = |v: Vector<Body>| axes.body_out(v).to_array();
-    let ([x, y, z], [tx, ty, tz], [bx, by, bz]) =
-        (vector(reading.value), vector(reading.truth), vector(reading.bias));
-    [x, y, z, tx, ty, tz, bx, by, bz]
 }
 
 /// A row of the estimate after `t_ns`.

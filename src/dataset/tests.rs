@@ -433,7 +433,7 @@ fn a_dataset_reads_back_as_it_was_true() {
         Player::new(&plan, plan.duration, 5)
             .play(|moment| {
                 for reading in moment.readings.iter().filter(|reading| reading.sensor == 1) {
-                    assert_eq!(readings.next(), Some((moment.t, reading.value)));
+                    assert_eq!(readings.next(), Some((moment.t, reading.body().unwrap().value)));
                 }
                 Ok::<(), std::convert::Infallible>(())
             })
@@ -494,7 +494,8 @@ fn a_figure_of_a_long_scene_keeps_what_shows_and_no_more() {
     let line = |end| figures_of(&plan, end)[0].series[0].points.clone();
     let mut all = Vec::new();
     let Ok(()) = Player::new(&plan, plan.duration, 256).play(|moment| {
-        let gyro = moment.readings.iter().map(|it| (moment.t.seconds(), it.value.v.x.to_degrees()));
+        let gyro =
+            moment.readings.iter().map(|it| (moment.t.seconds(), it.body().unwrap().value.v.x.to_degrees()));
         all.extend(gyro);
         Ok::<(), std::convert::Infallible>(())
     });

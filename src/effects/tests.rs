@@ -16,7 +16,7 @@ fn plan(text: &str, sets: &[&str]) -> Plan {
 fn readings(plan: &Plan) -> Vec<DVec3> {
     let mut readings = Vec::new();
     let Ok(()) = Player::new(plan, plan.duration, BLOCK).play(|moment| {
-        readings.extend(moment.readings.iter().map(|reading| reading.value.v));
+        readings.extend(moment.readings.iter().map(|reading| reading.body().unwrap().value.v));
         Ok::<(), Infallible>(())
     });
     readings

@@ -1,13 +1,13 @@
 //! What a sensor is given at its ticks: its error-free reading and, where its terms need it, more of the truth.
 
 use super::sensed;
-use crate::earth::{self, Place};
-use crate::geometry::{Body, Vector};
+use crate::earth::Place;
+use crate::geometry::{Attitude, Body, Vector};
 use crate::motion::{Course, Track, Trajectory, Truth};
 use crate::random::Normals;
 use crate::sensor::block::{self, Block, Column};
 use crate::sensor::{
-    Sampling, Sensor, SensorKind, SensorPlan, at_arm, delay, jitter, lever_arm, sea_level_pressure,
+    Air, InAir, Sampling, Senses, Sensor, SensorKind, SensorPlan, at_arm, delay, jitter, lever_arm,
 };
 use crate::time::SimTime;
 use glam::DVec3;
@@ -32,7 +32,7 @@ impl Feed {
         let arm = lever_arm(&plan.values).filter(|_| sensor.needs(Column::LeverArm));
         let sensing = if sensor.needs(Column::Late) { Sensing::of(plan, seed) } else { Sensing::default() };
         let force = sensor.needs(Column::Force);
-        let aid = (!plan.kind.is_triad()).then(|| Box::new(Aid::new(plan, origin)));
+        let aid = Aid::new(plan, origin).map(Box::new);
         Feed { kind: plan.kind, sampling: plan.sampling, sensing, force, arm, last: None, aid }
     }
 
@@ -45,11 +45,11 @@ impl Feed {
     /// Adds samples that are the truth at their ticks.
     pub(super) fn extend<'t>(&self, truth: impl Iterator<Item = &'t Truth> + Clone, block: &mut Block) {
         // A loop a kind: which field it is, is no question to ask of every sample.
-        match self.kind {
-            SensorKind::Gyro => block.extend(truth.clone().map(|truth| truth.rate)),
-            SensorKind::Accel => block.extend(truth.clone().map(|truth| truth.force)),
-            SensorKind::Mag => block.extend(truth.clone().map(|truth| truth.field)),
-            SensorKind::Baro | SensorKind::Gps => {}
+        match self.kind.row().senses {
+            Senses::Rate => block.extend(truth.clone().map(|truth| truth.rate)),
+            Senses::Force => block.extend(truth.clone().map(|truth| truth.force)),
+            Senses::Field => block.extend(truth.clone().map(|truth| truth.field)),
+            Senses::Course | Senses::Air(_) => {}
         }
         if self.force {
             block::extend(&mut block.force, truth.map(|truth| truth.force));
@@ -60,7 +60,8 @@ impl Feed {
     pub fn push(&mut self, t: SimTime, truth: &Truth, path: &Trajectory, block: &mut Block) {
         let at = self.sensing.time(t);
         if let Some(aid) = &mut self.aid {
-            return aid.push(t, (!self.sensing.is_at_ticks()).then_some(at), path, block);
+            let now = (t, truth.attitude);
+            return aid.push(now, (!self.sensing.is_at_ticks()).then_some(at), path, block);
         }
         let last = self.last.replace([t, at]).filter(|_| self.sampling == Sampling::Average);
         let seen = last.map_or(*truth, |[last, _]| path.mean(last, t));
@@ -86,47 +87,59 @@ impl Feed {
     }
 }
 
-/// A barometer or a GPS receiver: what it is given follows from where the vehicle is.
-#[derive(Debug)]
+/// A sensor that follows from where the vehicle is and how it moves.
 struct Aid {
-    kind: SensorKind,
     origin: Place,
-    /// Pa.
-    sea_level: f64,
+    /// What it senses of the air; a receiver's own course where there is nothing.
+    air: Option<Air>,
     /// At the ticks, and at the times of sensing: each goes forward.
     now: Option<Track>,
     late: Option<Track>,
 }
 
+impl std::fmt::Debug for Aid {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Aid").field("origin", &self.origin).finish_non_exhaustive()
+    }
+}
+
 impl Aid {
-    fn new(plan: &SensorPlan, origin: Place) -> Aid {
-        let sea_level = sea_level_pressure(&plan.values);
-        Aid { kind: plan.kind, origin, sea_level, now: None, late: None }
+    /// `None` for a sensor that follows from the truth of an instant.
+    fn new(plan: &SensorPlan, origin: Place) -> Option<Aid> {
+        let air = match plan.kind.row().senses {
+            Senses::Rate | Senses::Force | Senses::Field => return None,
+            Senses::Course => None,
+            Senses::Air(air) => Some(air(&plan.values)),
+        };
+        Some(Aid { origin, air, now: None, late: None })
     }
 
-    /// Adds the sample at `t`, and what was true at `late`, where it is sensed at another time.
-    fn push(&mut self, t: SimTime, late: Option<SimTime>, path: &Trajectory, block: &mut Block) {
+    /// Adds the sample of a tick with the attitude then, and what is true at `late`, where it is sensed at another time.
+    fn push(
+        &mut self,
+        (t, attitude): (SimTime, Attitude),
+        late: Option<SimTime>,
+        path: &Trajectory,
+        block: &mut Block,
+    ) {
         let now = self.now.get_or_insert_with(|| Track::new(path)).at(path, t);
-        block.push(self.sensed(now));
-        let late = late.map(|late| self.late.get_or_insert_with(|| Track::new(path)).at(path, late));
-        if let Some(late) = late {
-            block::push(&mut block.late, self.sensed(late));
-        }
-        if self.kind == SensorKind::Gps {
+        block.push(self.sensed(now, attitude));
+        let late = late.map(|late| {
+            let then = self.late.get_or_insert_with(|| Track::new(path)).at(path, late);
+            block::push(&mut block.late, self.sensed(then, path.at(late).attitude));
+            then
+        });
+        if self.air.is_none() {
             block::push(&mut block.true_velocity, now.velocity.v.to_array());
             block::push(&mut block.velocity, late.unwrap_or(now).velocity.v.to_array());
         }
     }
 
     /// The error-free reading.
-    fn sensed(&self, course: Course) -> [f64; 3] {
-        match self.kind {
-            SensorKind::Baro => {
-                let altitude = self.origin.altitude - course.position.v.z;
-                [earth::pressure(altitude, self.sea_level), 0.0, 0.0]
-            }
-            _ => course.position.v.to_array(),
-        }
+    fn sensed(&self, Course { position, velocity }: Course, attitude: Attitude) -> [f64; 3] {
+        let Some(air) = &self.air else { return position.v.to_array() };
+        let altitude = self.origin.altitude - position.v.z;
+        [air(&InAir { altitude, velocity, attitude }), 0.0, 0.0]
     }
 }
 

@@ -7,7 +7,7 @@ use crate::geometry::Vector;
 use crate::keys::{self, Key, Takes};
 use crate::quantity::{self, Kind, Sign};
 use crate::random;
-use crate::sensor::{self, SensorKind, SensorPlan};
+use crate::sensor::{self, SensorPlan};
 use glam::{DMat3, DVec3};
 use rand::RngExt;
 
@@ -102,10 +102,10 @@ impl Section<'_> {
         let context = plan.context(self.seed());
         let Some(bias) = sensor::settle_bias(&mut plan.values, &context) else { return };
         let unit = plan.kind.unit();
-        let values = match plan.kind {
-            SensorKind::Baro => vec![bias.x],
-            SensorKind::Gps => self.axes().nav_out(Vector::from_vec(bias)).to_array().to_vec(),
-            _ => self.axes().body_out(Vector::from_vec(bias)).to_array().to_vec(),
+        let values = match plan.kind.shape() {
+            sensor::Shape::Pressure => vec![bias.x],
+            sensor::Shape::Position => self.axes().nav_out(Vector::from_vec(bias)).to_array().to_vec(),
+            sensor::Shape::Triad => self.axes().body_out(Vector::from_vec(bias)).to_array().to_vec(),
         };
         let text = match values[..] {
             [x, y, z] => quantity::text_vector([x, y, z], unit),

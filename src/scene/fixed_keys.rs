@@ -38,7 +38,7 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("force", "duration", "how long it acts"),
     ("force", "acceleration", "a vector in `frame`"),
     ("force", "frame", "\"body\" (default) or \"nav\""),
-    ("fault", "sensor", "\"gyro\", \"accel\", \"mag\", \"baro\" or \"gps\""),
+    ("fault", "sensor", "a table of a sensor, such as \"gyro\" or \"baro\""),
     (
         "fault",
         "output",
@@ -112,8 +112,7 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("output", "force", "true: start although the baud rate does not carry the packets (default false)"),
 ];
 
-/// Whether a sensor has one of [`SENSOR_KEYS`]: a barometer and a GPS receiver are no parts on the chip's axes, and
-/// sample the moment.
+/// Whether a sensor has one of [`SENSOR_KEYS`]: only triads are parts on a chip's axes that may integrate.
 pub fn takes(sensor: SensorKind, key: &str) -> bool {
     sensor.is_triad() || !["sampling", "mount", "part"].contains(&key)
 }

@@ -66,9 +66,9 @@ mod tests {
         let gyro = |plan: &Plan| {
             let mut values = Vec::new();
             let played = Player::new(plan, SimTime(10_000_000_000), BLOCK).play(|moment| {
-                values.extend(
-                    moment.readings.iter().map(|reading| (reading.kind, reading.value.v - reading.truth.v)),
-                );
+                values.extend(moment.readings.iter().map(|reading| {
+                    (reading.kind, reading.body().unwrap().value.v - reading.body().unwrap().truth.v)
+                }));
                 assert!(plan.duration != SimTime::FOREVER || moment.truth.rate.v.length() == 0.0);
                 Ok::<(), Infallible>(())
             });

@@ -1,4 +1,4 @@
-//! `[gyro]`, `[accel]`, `[mag]`, `[baro]` and `[gps]`: rates, parts and error terms.
+//! The tables of sensors, such as `[gyro]`: rates, parts and error terms.
 
 use super::document::Value;
 use super::kalibr;
@@ -44,7 +44,7 @@ fn sensor(
     seed: u64,
 ) -> Option<SensorPlan> {
     // A Kalibr file that could not be read would have had one.
-    let usual = (kind == SensorKind::Gps).then_some("5 Hz");
+    let usual = kind.row().usual_rate;
     if usual.is_none() && !section.has("rate") && !(kind.is_triad() && kalibr::is_meant(section)) {
         section.lacks(format!("[{kind}] needs a rate, such as rate = \"100 Hz\""));
     }

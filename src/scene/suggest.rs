@@ -2,9 +2,11 @@
 
 pub use crate::keys::{did_you_mean, nearest};
 
+use crate::sensor::SensorKind;
+
 /// What a key known from another tool, or from another table, is called in the table `path` (empty: the scene).
 pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
-    if !["", "gyro", "accel", "mag", "baro", "gps"].contains(&path) {
+    if !path.is_empty() && SensorKind::from_name(path).is_none() {
         return None;
     }
     let answer = match key {

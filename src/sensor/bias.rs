@@ -1,6 +1,6 @@
 //! Turn-on bias: fixed, or drawn once a run.
 
-use super::{Block, Context, Stage, Term, TermKind};
+use super::{Block, Context, Kinds, Stage, Term, TermKind};
 use crate::double::Double;
 use crate::keys::{Key, Takes, Value, Values};
 use crate::quantity::Sign;
@@ -9,6 +9,7 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "bias",
     about: "turn-on bias: `bias` plus `bias_std` times a normal number drawn once a run",
+    serves: Kinds::ALL,
     stage: Stage::Bias,
     needs: &[],
     keys: |sensor| {

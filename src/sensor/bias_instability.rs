@@ -5,7 +5,7 @@
 //! deviation peaks at 0.617 σ, at 1.89 τ (IEEE Std 952-1997, annex C).
 
 use super::wander::wander;
-use super::{Block, Stage, Term, TermKind, flicker};
+use super::{Block, Kinds, Stage, Term, TermKind, flicker};
 use crate::keys::{Key, KeyError, Takes};
 use crate::quantity::{Kind, Sign};
 use crate::random::Normals;
@@ -14,6 +14,7 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_instability",
     about: "the bias wanders as a first-order Gauss-Markov process",
+    serves: Kinds::ALL,
     stage: Stage::Bias,
     needs: &[],
     keys: |sensor| {

@@ -1,13 +1,14 @@
 //! Bias that changes with temperature: `b += c·(T − 25 °C)`, the first order of IEEE Std 952-1997, sec. 5.4 (its
 //! temperature sensitivity); zero for a part whose `temperature` the scene does not give.
 
-use super::{Block, REFERENCE_TEMPERATURE, Stage, Term, TermKind};
+use super::{Block, Kinds, REFERENCE_TEMPERATURE, Stage, Term, TermKind};
 use crate::keys::{Key, Takes};
 use glam::DVec3;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_temperature",
     about: "bias in proportion to the temperature's difference from 25 degC",
+    serves: Kinds::BY_COMPONENT,
     stage: Stage::Bias,
     needs: &[],
     keys: |sensor| {

@@ -4,7 +4,7 @@
 //! σ = K·√dt with K = `bias_random_walk`, whose growth K·√t does not depend on the rate.
 
 use super::wander::wander;
-use super::{Block, Context, Stage, Term, TermKind};
+use super::{Block, Context, Kinds, Stage, Term, TermKind};
 use crate::keys::{Key, Takes, Values};
 use crate::quantity::Sign;
 use crate::random::Normals;
@@ -13,6 +13,7 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_walk",
     about: "the bias takes a normal step after each sample",
+    serves: Kinds::ALL,
     stage: Stage::Bias,
     needs: &[],
     keys: |sensor| {

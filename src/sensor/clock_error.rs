@@ -5,7 +5,7 @@
 //! taken at its tick plus σ·n, within ±0.4 periods, while its time stays the tick's: white phase noise of the clock
 //! (IEEE Std 1139).
 
-use super::{Block, Column, Stage, Term, TermKind};
+use super::{Block, Column, Kinds, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Nested, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::Rate;
@@ -28,6 +28,7 @@ static KEYS: [Key; 2] = [
 pub(super) static KIND: TermKind = TermKind {
     name: "clock_error",
     about: "samples are taken a little before or after their ticks",
+    serves: Kinds::ALL,
     stage: Stage::Signal,
     needs: &[Column::Late],
     keys: |_| {

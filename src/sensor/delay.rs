@@ -2,13 +2,14 @@
 //! before the start it is what was true at the start. It concerns what is true, not the biases and the noise, whose
 //! statistics know no time.
 
-use super::{Block, Column, Stage, Term, TermKind};
+use super::{Block, Column, Kinds, Stage, Term, TermKind};
 use crate::keys::{Key, Takes, Values};
 use crate::time::SimTime;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "delay",
     about: "what is available at a tick was sensed earlier",
+    serves: Kinds::ALL,
     stage: Stage::Signal,
     needs: &[Column::Late],
     keys: |_| {

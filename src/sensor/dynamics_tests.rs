@@ -3,7 +3,7 @@
 use super::signal_tests::{in_blocks, plan, played};
 use super::tests::{DEG, allan_variance, read, sensor, spread};
 use super::*;
-use crate::geometry::rotate;
+use crate::geometry::{Vector, rotate};
 use crate::scene::Plan;
 use glam::DVec3;
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -107,16 +107,24 @@ fn a_delay_is_exact_in_ticks_and_between_them() {
         };
         let (now, late) = (scene("0 s"), scene("3 ms"));
         for k in 0..now.len() {
-            assert_eq!(late[k].value, now[k.saturating_sub(3)].value, "{sampling} {k}");
-            assert_eq!(late[k].truth, now[k].truth, "the truth is not late");
+            assert_eq!(
+                late[k].body().unwrap().value,
+                now[k.saturating_sub(3)].body().unwrap().value,
+                "{sampling} {k}"
+            );
+            assert_eq!(late[k].body().unwrap().truth, now[k].body().unwrap().truth, "the truth is not late");
         }
-        assert_ne!(late[100].value, now[98].value, "two ticks are another delay");
+        assert_ne!(
+            late[100].body().unwrap().value,
+            now[98].body().unwrap().value,
+            "two ticks are another delay"
+        );
     }
     let text = format!("{CONE}[accel]\nrate = \"100 Hz\"\ndelay = \"12.345678 ms\"");
     let path = plan(&text).trajectory;
     for (k, reading) in played(&text).iter().enumerate() {
         let t = SimTime((k as i64 * 10_000_000 - 12_345_678).max(0));
-        assert_eq!(reading.value, path.at(t).force);
+        assert_eq!(reading.body().unwrap().value, path.at(t).force);
     }
 }
 
@@ -128,7 +136,7 @@ fn a_spinning_lever_arm_feels_its_centripetal_acceleration() {
         );
         let w = 300.0 * DEG;
         for reading in played(&text) {
-            let felt = (reading.value - reading.truth).v;
+            let felt = (reading.body().unwrap().value - reading.body().unwrap().truth).v;
             assert!((felt + w * w * DVec3::new(0.1, 0.02, 0.0)).length() < 1e-13, "{sampling}: {felt}");
         }
     }
@@ -146,7 +154,7 @@ fn a_lever_arm_feels_the_second_derivative_of_where_it_is() {
         let t = k as i64 * 10_000_000;
         let second = (place(t + h) - 2.0 * place(t) + place(t - h)) / (h as f64 * 1e-9).powi(2);
         let expected = path.at(SimTime(t)).attitude.inverse().apply(Vector::from_vec(second)).v;
-        let felt = (reading.value - reading.truth).v;
+        let felt = (reading.body().unwrap().value - reading.body().unwrap().truth).v;
         // ε/h² of rounding.
         assert!((felt - expected).length() < 1e-5, "{k}: {felt} against {expected}");
         most = most.max(felt.length());
@@ -155,7 +163,7 @@ fn a_lever_arm_feels_the_second_derivative_of_where_it_is() {
     // A mean is the mean of the points.
     let mean = played(&format!("{text}\nsampling = \"average\""));
     let fine = played(&text.replace("100 Hz", "100 kHz"));
-    let felt = |reading: &Reading| (reading.value - reading.truth).v;
+    let felt = |reading: &Reading| (reading.body().unwrap().value - reading.body().unwrap().truth).v;
     for k in 1..mean.len() {
         let points = &fine[(k - 1) * 1000..=k * 1000];
         let trapezia = (points[1..1000].iter().map(felt).sum::<DVec3>()
@@ -181,7 +189,7 @@ fn a_vibration_is_its_sines_at_the_ticks_of_any_rate_folded_over_above_half_of_i
                 };
                 let expected = DVec3::new(1.0, 0.0, 2.0) * sine(37.0, 30.0 * DEG)
                     + DVec3::new(0.0, 0.5, 0.0) * sine(1010.0, 0.0);
-                let felt = (reading.value - reading.truth).v;
+                let felt = (reading.body().unwrap().value - reading.body().unwrap().truth).v;
                 // A tick is a whole nanosecond: 2π·1010 Hz·0.5 ns.
                 assert!(
                     (felt - expected).length() < 2e-5,
@@ -195,7 +203,7 @@ fn a_vibration_is_its_sines_at_the_ticks_of_any_rate_folded_over_above_half_of_i
         let text = format!(
             "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nvibration = {{ frequency = \"1010 Hz\", amplitude = \"1 rad/s\" }}\n{filter}"
         );
-        played(&text).iter().map(|reading| reading.value.v.x.abs()).fold(0.0, f64::max)
+        played(&text).iter().map(|reading| reading.body().unwrap().value.v.x.abs()).fold(0.0, f64::max)
     };
     assert!((folded("") - 1.0).abs() < 1e-4);
     assert!((folded("filter = \"10.1 Hz\"") - 1.0 / 10001f64.sqrt()).abs() < 1e-5);
@@ -359,7 +367,7 @@ fn a_fast_clock_ticks_early_and_reads_what_is_true_then() {
         let plan = plan(&text);
         let mut ticks = Vec::new();
         let Ok(()) = crate::player::Player::new(&plan, SimTime(3_000_000_000), 64).play(|moment| {
-            assert_eq!(moment.readings[0].value, plan.trajectory.at(moment.t).rate);
+            assert_eq!(moment.readings[0].body().unwrap().value, plan.trajectory.at(moment.t).rate);
             ticks.push(moment.t.0);
             Ok::<(), std::convert::Infallible>(())
         });
@@ -386,7 +394,9 @@ fn a_jittering_clock_errs_by_its_jitter_times_the_signals_slope() {
     let errors = |readings: &[Reading]| -> Vec<f64> {
         let slope = |k: usize| TAU * 2.0 * (TAU * 2.0 * k as f64 / 1000.0).cos();
         let steep = (1..readings.len()).filter(|&k| slope(k).abs() > 6.0);
-        steep.map(|k| (readings[k].value - readings[k].truth).v.x / slope(k)).collect()
+        steep
+            .map(|k| (readings[k].body().unwrap().value - readings[k].body().unwrap().truth).v.x / slope(k))
+            .collect()
     };
     let jitter = errors(&scene(1, "clock_error = { jitter = \"20 us\" }"));
     spread(&jitter, 20e-6).unwrap();

@@ -3,7 +3,7 @@
 //! A fault acts on the samples of [start, end). Those that withhold samples leave the others on their ticks. Random
 //! ones draw from the stream `fault/N/KIND`, N counting the sensor's faults from 0.
 
-use super::{Block, Context, SensorKind, Term, aid};
+use super::{Block, Context, SensorKind, Term};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Stream;
@@ -64,7 +64,7 @@ impl FaultKind {
         let key = |name, takes, default, about| Key { name, takes, default, about };
         let size =
             key("size", Takes::BodyVector(sensor.units().reading), None, "of what is added, or its bound");
-        let size = aid::turned(sensor, size);
+        let size = sensor.turned(size);
         let share = Takes::Scalar(Kind::RATIO.signed(Sign::NonNegative));
         match self {
             FaultKind::Off | FaultKind::Stuck | FaultKind::Wrong => vec![],

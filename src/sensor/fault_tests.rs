@@ -2,6 +2,7 @@
 
 use super::signal_tests::{in_blocks, plan, played};
 use super::*;
+use crate::geometry::{Body, Vector};
 use crate::scene::Plan;
 
 /// A gyro at 100 Hz on a swing with noise, whose sample k is unlike any other, with these faults.
@@ -25,7 +26,12 @@ fn beside(kind: &str, more: &str) -> Vec<(Option<Vector<Body>>, Vector<Body>)> {
     assert_eq!(without.len(), 300);
     let pairs: Vec<_> = without
         .iter()
-        .map(|reading| (with.next_if(|with| with.k == reading.k).map(|with| with.value), reading.value))
+        .map(|reading| {
+            (
+                with.next_if(|with| with.k == reading.k).map(|with| with.body().unwrap().value),
+                reading.body().unwrap().value,
+            )
+        })
         .collect();
     assert!(with.next().is_none());
     for (k, (with, without)) in pairs.iter().enumerate() {

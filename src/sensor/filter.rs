@@ -5,7 +5,7 @@
 //! that is straight from tick to tick (ramp-invariant; Franklin, Powell & Workman, *Digital Control of Dynamic
 //! Systems*, 3rd ed., sec. 6.3), so that any cut-off goes with any rate; it starts settled on the first sample.
 
-use super::{Block, Context, Stage, Term, TermKind};
+use super::{Block, Context, Kinds, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Nested, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use std::f64::consts::{SQRT_2, TAU};
@@ -23,6 +23,7 @@ static KEYS: [Key; 2] = [
 pub(super) static KIND: TermKind = TermKind {
     name: "filter",
     about: "a low-pass filter on the true signal, of first or second order",
+    serves: Kinds::BY_COMPONENT,
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {

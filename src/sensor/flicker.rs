@@ -6,7 +6,7 @@
 //! one process a decade is within some 5 %). Below the band the spectrum is flat, above it falls as 1/f².
 
 use super::wander::wander;
-use super::{Block, Context, Stage, Term, TermKind};
+use super::{Block, Context, Kinds, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Nested, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Normals;
@@ -23,6 +23,7 @@ static BAND: [Key; 2] = [
 pub(super) static KIND: TermKind = TermKind {
     name: "flicker",
     about: "the bias wanders with a 1/f spectrum",
+    serves: Kinds::ALL,
     stage: Stage::Bias,
     needs: &[],
     keys: |_| {

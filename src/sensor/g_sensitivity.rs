@@ -1,7 +1,7 @@
 //! The bias that acceleration gives a gyroscope: `b += G·f`, f the true specific force at the gyro's ticks (Groves,
 //! *Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems*, 2nd ed., eq. 4.17).
 
-use super::{Block, Column, SensorKind, Stage, Term, TermKind, linear};
+use super::{Block, Column, Kinds, SensorKind, Stage, Term, TermKind, linear};
 use crate::keys::{Key, Takes};
 use crate::quantity::Kind;
 use glam::DMat3;
@@ -9,16 +9,16 @@ use glam::DMat3;
 pub(super) static KIND: TermKind = TermKind {
     name: "g_sensitivity",
     about: "bias of a gyroscope in proportion to the specific force",
+    serves: Kinds::of(&[SensorKind::Gyro]),
     stage: Stage::Bias,
     needs: &[Column::Force],
-    keys: |sensor| match sensor {
-        SensorKind::Gyro => vec![Key {
+    keys: |_| {
+        vec![Key {
             name: "g_sensitivity",
             takes: Takes::Matrix(Kind::G_SENSITIVITY),
             default: None,
             about: "bias for each g of specific force, along the same axis (a vector) or across (three rows)",
-        }],
-        _ => vec![],
+        }]
     },
     build: |values, _| {
         let matrix = values.matrix("g_sensitivity").unwrap_or(DMat3::ZERO);

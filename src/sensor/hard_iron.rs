@@ -1,7 +1,7 @@
 //! Hard iron: what is magnetised on the vehicle adds a field that turns with it: `reading = field + h` (Vasconcelos
 //! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
 
-use super::{Block, SensorKind, Stage, Term, TermKind};
+use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, Takes};
 use crate::quantity::Kind;
 use glam::DVec3;
@@ -9,16 +9,16 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "hard_iron",
     about: "a field fixed to the vehicle, after soft iron and before the sensor's own scale",
+    serves: Kinds::of(&[SensorKind::Mag]),
     stage: Stage::Signal,
     needs: &[],
-    keys: |sensor| match sensor {
-        SensorKind::Mag => vec![Key {
+    keys: |_| {
+        vec![Key {
             name: "hard_iron",
             takes: Takes::BodyVector(Kind::FIELD),
             default: Some("0"),
             about: "field of what is magnetised on the vehicle",
-        }],
-        _ => vec![],
+        }]
     },
     build: |values, _| {
         let field = values.vector("hard_iron").unwrap_or_default();

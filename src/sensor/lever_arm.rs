@@ -2,7 +2,7 @@
 //! Weston, *Strapdown Inertial Navigation Technology*, 2nd ed., sec. 2.4). A jump of the angular rate, whose
 //! derivative has no bound, adds nothing.
 
-use super::{Block, Column, SensorKind, Stage, Term, TermKind};
+use super::{Block, Column, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::geometry::{Body, Vector};
 use crate::keys::{Key, Takes, Values};
 use crate::quantity::Kind;
@@ -11,16 +11,16 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "lever_arm",
     about: "what an accelerometer off the point that moves feels more: dw/dt × r + w × (w × r)",
+    serves: Kinds::of(&[SensorKind::Accel]),
     stage: Stage::Signal,
     needs: &[Column::LeverArm],
-    keys: |sensor| match sensor {
-        SensorKind::Accel => vec![Key {
+    keys: |_| {
+        vec![Key {
             name: "lever_arm",
             takes: Takes::BodyVector(Kind::LENGTH),
             default: Some("0"),
             about: "from the point that moves to the accelerometer",
-        }],
-        _ => vec![],
+        }]
     },
     build: |values, _| Ok(lever_arm(values).map(|_| Box::new(LeverArm) as Box<dyn Term>)),
 };

@@ -5,7 +5,7 @@
 //! Inertial Navigation Technology*, 2nd ed., sec. 4.4 and 8.3). `matrix` is a full 3×3, the identity for a part
 //! without errors. All three are in body axes, as every vector of a scene.
 
-use super::{Block, Stage, Term, TermKind, linear};
+use super::{Block, Kinds, Stage, Term, TermKind, linear};
 use crate::geometry;
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::Kind;
@@ -14,6 +14,7 @@ use glam::{DMat3, DVec3};
 pub(super) static KIND: TermKind = TermKind {
     name: "matrix",
     about: "scale error, misalignment and cross-coupling as one matrix",
+    serves: Kinds::TRIADS,
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {

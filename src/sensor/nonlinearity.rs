@@ -5,7 +5,7 @@
 //! ±R (Chebyshev's T₃; "best-fit straight line" of datasheets, IEEE Std 528). Beyond full scale it stays n·R.
 
 use super::mount::Mount;
-use super::{Block, Stage, Term, TermKind};
+use super::{Block, Kinds, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes};
 use crate::quantity::Kind;
 use glam::DVec3;
@@ -13,6 +13,7 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "nonlinearity",
     about: "an odd cubic deviation from the best straight line, in chip axes",
+    serves: Kinds::TRIADS,
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {

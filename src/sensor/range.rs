@@ -2,13 +2,14 @@
 
 use super::mount::Mount;
 use super::resolution::{self, Converter};
-use super::{Block, SensorKind, Stage, Term, TermKind};
+use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::Sign;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "range",
     about: "clips to ± the range, in chip axes, and flags the sample",
+    serves: Kinds::BY_COMPONENT,
     stage: Stage::Reading,
     needs: &[],
     keys: |sensor| {

@@ -1,13 +1,14 @@
 //! Resolution: a reading is a whole number of counts on the chip's axes, rounded half away from zero.
 
 use super::mount::Mount;
-use super::{Block, SensorKind, Stage, Term, TermKind};
+use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{self, Resolution};
 
 pub(super) static KIND: TermKind = TermKind {
     name: "resolution",
     about: "rounds to whole counts, in chip axes",
+    serves: Kinds::ALL,
     stage: Stage::Reading,
     needs: &[],
     keys: |sensor| {

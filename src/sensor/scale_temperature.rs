@@ -1,7 +1,7 @@
 //! Scale that changes with temperature: `reading *= 1 + c·(T − 25 °C)`; none for a part whose `temperature` the scene
 //! does not give (IEEE Std 952-1997, sec. 5.4: the scale factor's temperature sensitivity).
 
-use super::{Block, REFERENCE_TEMPERATURE, Stage, Term, TermKind};
+use super::{Block, Kinds, REFERENCE_TEMPERATURE, Stage, Term, TermKind};
 use crate::keys::{Key, Takes};
 use crate::quantity::Kind;
 use glam::DVec3;
@@ -9,6 +9,7 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "scale_temperature",
     about: "scale error in proportion to the temperature's difference from 25 degC",
+    serves: Kinds::TRIADS,
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {

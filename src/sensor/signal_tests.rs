@@ -2,6 +2,7 @@
 
 use super::tests::{DEG, sensor};
 use super::*;
+use crate::geometry::Vector;
 use crate::player::Player;
 use crate::scene::Plan;
 use glam::DVec3;
@@ -99,7 +100,7 @@ fn vectors_and_matrices_are_in_the_axes_of_the_scene() {
             "axes = \"{axes}\"\n[[motion]]\nkind = \"rotate\"\nangular_rate = \"{rate:?} rad/s\"\nduration = \"10 ms\"\n[gyro]\nrate = \"100 Hz\"\n{keys}"
         );
         let plan = plan(&text);
-        plan.axes.body_out(played(&text)[0].value)
+        plan.axes.body_out(played(&text)[0].body().unwrap().value)
     };
     let ned = scene("ned-frd", [1.0, 2.0, 3.0]);
     assert!((scene("enu-flu", [1.0, 2.0, 3.0]) - ned).length() < 1e-14);
@@ -158,12 +159,15 @@ fn acceleration_gives_a_gyro_a_bias_of_the_true_specific_force() {
     for (k, reading) in scene("g_sensitivity = \"[0.1, 0.2, 0.3] deg/s/g\"").iter().enumerate() {
         // Level, then rolled by φ: the force is −g on z, then on y too.
         let (sine, cosine) = (k as f64 * 0.9 * DEG).sin_cos();
-        near(reading.bias.v, [0.0, -0.2 * DEG * sine, -0.3 * DEG * cosine], 1e-14);
-        assert_eq!(reading.value, reading.truth + reading.bias);
+        near(reading.body().unwrap().bias.v, [0.0, -0.2 * DEG * sine, -0.3 * DEG * cosine], 1e-14);
+        assert_eq!(
+            reading.body().unwrap().value,
+            reading.body().unwrap().truth + reading.body().unwrap().bias
+        );
     }
     let across = scene("g_sensitivity = \"[[0, 0, 0.1], [0, 0, 0], [0, 0, 0]] deg/s/g\"");
-    near(across[0].bias.v, [-0.1 * DEG, 0.0, 0.0], 1e-15);
-    assert!(scene("").iter().all(|reading| reading.bias == Vector::ZERO));
+    near(across[0].body().unwrap().bias.v, [-0.1 * DEG, 0.0, 0.0], 1e-15);
+    assert!(scene("").iter().all(|reading| reading.body().unwrap().bias == Vector::ZERO));
 }
 
 #[test]
@@ -179,9 +183,9 @@ fn a_part_that_warms_up_follows_the_exponential_and_its_coefficients_with_it() {
             let expected = 15.0 + 20.0 * (1.0 - (-t / 0.7).exp());
             assert!((reading.temperature - expected).abs() < 1e-7, "{rate} {k}: {}", reading.temperature);
             let off = reading.temperature - 25.0;
-            near(reading.bias.v, [2e-3 * G * off, 0.0, -1e-3 * G * off], 1e-14);
+            near(reading.body().unwrap().bias.v, [2e-3 * G * off, 0.0, -1e-3 * G * off], 1e-14);
             let z = -G * (1.0 + 300e-6 * off) - 1e-3 * G * off;
-            near(reading.value.v, [2e-3 * G * off, 0.0, z], 1e-13);
+            near(reading.body().unwrap().value.v, [2e-3 * G * off, 0.0, z], 1e-13);
         }
     }
 }
@@ -279,9 +283,10 @@ fn every_term_does_something_is_named_and_does_not_care_where_blocks_begin() {
             for block in [1, 7, 64, 1000] {
                 assert_eq!(blocks(block), whole, "{name} in blocks of {block}");
             }
-            let off = |reading: &Reading| {
-                let fix = reading.fix.is_some_and(|fix| fix.velocity != fix.true_velocity);
-                fix || reading.value != reading.truth
+            let off = |reading: &Reading| match &reading.measurement {
+                Measurement::Triad(triad) => triad.value != triad.truth,
+                Measurement::Pressure(pressure) => pressure.value != pressure.truth,
+                Measurement::Position(Position { fix, true_fix, .. }) => fix != true_fix,
             };
             assert!(whole.iter().any(off), "{name} does nothing");
         }
@@ -294,7 +299,10 @@ fn adding_a_term_leaves_every_random_number_of_the_others() {
     // One that is linear in what comes before it, so that differences show it alone.
     let noise = "noise_std = \"0.1 rad/s\"";
     let readings = |keys: &str| played(&on_a_manoeuvre("[gyro]", keys));
-    let alone: Vec<_> = readings(noise).iter().map(|reading| reading.value - reading.truth).collect();
+    let alone: Vec<_> = readings(noise)
+        .iter()
+        .map(|reading| reading.body().unwrap().value - reading.body().unwrap().truth)
+        .collect();
     let others = ALONE.iter().filter(|(name, table, _)| {
         *table == "[gyro]" && !["white_noise", "range", "resolution", "nonlinearity"].contains(name)
     });
@@ -302,7 +310,7 @@ fn adding_a_term_leaves_every_random_number_of_the_others() {
         let with = readings(&format!("{keys}\n{noise}"));
         let without = readings(keys);
         for ((with, without), noise) in with.iter().zip(&without).zip(&alone) {
-            let drawn = with.value - without.value;
+            let drawn = with.body().unwrap().value - without.body().unwrap().value;
             assert!((drawn - *noise).length() < 1e-13, "{name} changed the white noise: {drawn:?} {noise:?}");
         }
     }

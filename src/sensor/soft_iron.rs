@@ -1,7 +1,7 @@
 //! Soft iron: magnetised by the field it is in, it stretches and turns that field: `reading = M·field` (Vasconcelos
 //! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
 
-use super::{Block, SensorKind, Stage, Term, TermKind, linear};
+use super::{Block, Kinds, SensorKind, Stage, Term, TermKind, linear};
 use crate::keys::{Key, Takes};
 use crate::quantity::Kind;
 use glam::DMat3;
@@ -9,16 +9,16 @@ use glam::DMat3;
 pub(super) static KIND: TermKind = TermKind {
     name: "soft_iron",
     about: "the field multiplied by a matrix, before hard iron",
+    serves: Kinds::of(&[SensorKind::Mag]),
     stage: Stage::Signal,
     needs: &[],
-    keys: |sensor| match sensor {
-        SensorKind::Mag => vec![Key {
+    keys: |_| {
+        vec![Key {
             name: "soft_iron",
             takes: Takes::Matrix(Kind::RATIO),
             default: None,
             about: "what the field around the magnetometer is multiplied by; 1 without soft iron",
-        }],
-        _ => vec![],
+        }]
     },
     build: |values, _| {
         let matrix = values.matrix("soft_iron").unwrap_or_default();

@@ -4,7 +4,7 @@
 //! of cooling). Coefficients count from 25 °C, at which datasheets hold.
 
 use super::strides::{STRIDE, strides};
-use super::{Block, Context, Stage, Term, TermKind};
+use super::{Block, Context, Kinds, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Nested, Takes};
 use crate::quantity::{Kind, Sign};
 use crate::time::{Rate, SimTime};
@@ -36,6 +36,7 @@ static KEYS: [Key; 3] = [
 pub(super) static KIND: TermKind = TermKind {
     name: "temperature",
     about: "the part's temperature: what its coefficients act on and its packets report",
+    serves: Kinds::BY_COMPONENT,
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {

@@ -469,7 +469,7 @@ fn an_averaged_sample_is_the_mean_over_the_interval_that_ends_at_its_tick() {
         let mut seen = Vec::new();
         let mut player = crate::player::Player::new(&plan, SimTime(60_000_000), 2);
         let played: Result<(), ()> = player.play(|moment| {
-            seen.push((moment.readings[0].value.v.x.to_degrees() * 1e6).round() / 1e6);
+            seen.push((moment.readings[0].body().unwrap().value.v.x.to_degrees() * 1e6).round() / 1e6);
             Ok(())
         });
         played.unwrap();

@@ -48,7 +48,7 @@ pub(super) static MAG_UNITS: Units = Units {
     resolution: Kind::MAG_RESOLUTION,
     per_kelvin: Some(Kind::MAG_PER_KELVIN),
 };
-pub(super) static BARO_UNITS: Units = Units {
+pub(super) static PRESSURE_UNITS: Units = Units {
     reading: Kind::PRESSURE,
     variance: Kind::BARO_VARIANCE,
     density: Kind::BARO_DENSITY,

@@ -8,7 +8,7 @@
 
 use super::filter::LowPass;
 use super::strides::{STRIDE, strides};
-use super::{Block, Context, Sampling, SensorKind, Stage, Term, TermKind, delay};
+use super::{Block, Context, Kinds, Sampling, SensorKind, Stage, Term, TermKind, delay};
 use crate::keys::{Key, KeyError, Nested, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::{Rate, SimTime};
@@ -67,13 +67,13 @@ static ACCEL: [Key; 7] = keys(Kind::ACCELERATION, Kind::ACCEL_SPECTRUM, &ACCEL_P
 pub(super) static KIND: TermKind = TermKind {
     name: "vibration",
     about: "sines felt beside the motion, or random ones by their spectrum",
+    serves: Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]),
     stage: Stage::Signal,
     needs: &[],
     keys: |sensor| {
         let keys = match sensor {
             SensorKind::Gyro => &GYRO,
-            SensorKind::Accel => &ACCEL,
-            _ => return vec![],
+            _ => &ACCEL,
         };
         vec![Key {
             name: "vibration",

@@ -5,7 +5,7 @@
 //! (`angle_random_walk`, `velocity_random_walk`, what Kalibr calls a noise density: σ = N·√fs).
 //! `noise_density = √2 · random walk`: the factor on which users of every tool trip.
 
-use super::{Block, SensorKind, Stage, Term, TermKind};
+use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Normals;
@@ -15,6 +15,7 @@ use glam::DVec3;
 pub(super) static KIND: TermKind = TermKind {
     name: "white_noise",
     about: "a fresh normal number each sample",
+    serves: Kinds::ALL,
     stage: Stage::Reading,
     needs: &[],
     keys: |sensor| {

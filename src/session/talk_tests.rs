@@ -180,7 +180,7 @@ fn readings(plan: &Plan) -> Vec<(i64, SensorKind, [f64; 3])> {
     let mut all = Vec::new();
     let played = Player::new(plan, plan.duration, BLOCK).play(|moment| {
         let row = |reading: &crate::sensor::Reading| {
-            (moment.t.0, reading.kind, plan.axes.body_out(reading.value).to_array())
+            (moment.t.0, reading.kind, plan.axes.body_out(reading.body().unwrap().value).to_array())
         };
         all.extend(moment.readings.iter().map(row));
         Ok::<(), Infallible>(())

@@ -62,7 +62,7 @@ fn lateness_is_what_the_clock_did_and_everything_is_sent() {
     pacer.run(1_000_000, &shared);
     accounts_balance(&made, &mut pacer);
     assert_eq!(made.samples[0], [1000, 1000, 100, 0, 0]);
-    let reports = tally::sensors(&plan, &pacer.tallies, made.samples[0], [0; 5], true);
+    let reports = tally::sensors(&plan, &pacer.tallies, made.samples[0], Default::default(), true);
     let late = reports[0].late_us.unwrap();
     assert_eq!((late.min, late.p50), (0.0, 0.0));
     assert!((late.max - 30.0).abs() < 0.03 && (late.p99 - 30.0).abs() < 0.03, "{late:?}");
@@ -89,7 +89,7 @@ fn scene_time_goes_as_fast_as_asked() {
             Speed::Times(times),
         );
         pacer.run(0, &shared);
-        let report = &tally::sensors(&plan, &pacer.tallies, [0; 5], [0; 5], true)[0];
+        let report = &tally::sensors(&plan, &pacer.tallies, Default::default(), Default::default(), true)[0];
         assert!((report.sent_hz.unwrap() / 1000.0 - times).abs() < 1e-6 * times, "{times}");
         assert_eq!(report.late_us.unwrap().max, 0.0, "a virtual clock is never late");
     }

@@ -71,7 +71,8 @@ fn slices_of_the_bare_timer_change_no_byte_and_take_no_scene_time() {
 #[test]
 fn rates_and_intervals_leave_the_bare_timers_slices_out() {
     let (pacer, ..) = watched(VirtualClock::default());
-    let report = &tally::sensors(&plan(SCENE), &pacer.tallies, [1000, 1000, 100, 0, 0], [0; 5], true);
+    let report =
+        &tally::sensors(&plan(SCENE), &pacer.tallies, [1000, 1000, 100, 0, 0], Default::default(), true);
     for (sensor, hz, intervals) in [(0, 1000.0, 1_000.0), (2, 100.0, 10_000.0)] {
         assert!((report[sensor].sent_hz.unwrap() / hz - 1.0).abs() < 1e-9, "{:?}", report[sensor]);
         let interval = report[sensor].interval_us.unwrap();
@@ -114,7 +115,7 @@ fn after_a_clock_that_steps_forward_late_packets_go_at_once_and_are_counted_late
         let mut pacer = Pacer::new(clock, ring, vec![sender], [Overload::default()], Speed::Times(1.0));
         pacer.run(MILLI, &shared);
         accounts_balance(&made, &mut pacer);
-        let report = &tally::sensors(&plan, &pacer.tallies, made.samples[0], [0; 5], true)[0];
+        let report = &tally::sensors(&plan, &pacer.tallies, made.samples[0], Default::default(), true)[0];
         assert_eq!(report.sent + report.dropped, 1000);
         if capacity == 1 << 20 {
             let late = report.late_us.unwrap();

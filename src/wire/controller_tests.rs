@@ -122,8 +122,8 @@ fn a_mistake_in_the_readings_is_not_golden() {
         for change in changes {
             let changed = first(&|reading: &mut Reading| {
                 if reading.kind == kind {
-                    let [x, y, z] = change(reading.value.v.to_array());
-                    reading.value = Vector::new(x, y, z);
+                    let [x, y, z] = change(reading.body().unwrap().value.v.to_array());
+                    *reading = reading.with_body(Vector::new(x, y, z));
                 }
             });
             assert_ne!(changed, TURNING, "{kind}");
@@ -167,9 +167,8 @@ fn after_a_second(protocol: Protocol, values: [[f64; 3]; 3]) -> Vec<Packet> {
     for seconds in [0, 1] {
         first = packets.len();
         let t = SimTime(seconds * NANOS);
-        let reading = |(i, [x, y, z]): (usize, [f64; 3])| Reading {
-            value: Vector::new(x, y, z),
-            ..Reading::zero(i, SensorKind::ALL[i])
+        let reading = |(i, [x, y, z]): (usize, [f64; 3])| {
+            Reading::zero(i, SensorKind::ALL[i]).with_body(Vector::new(x, y, z))
         };
         let readings: Vec<_> = values.into_iter().enumerate().map(reading).collect();
         encoder.encode(&Now { t, truth: &at_rest(t), readings: &readings }, &mut packets);
@@ -244,10 +243,8 @@ fn ramp(protocol: Protocol, gyro: Rate, peer: Peer) -> Vec<Packet> {
     let mut encoder = encoder(protocol, &Setup { peer, ..setup(&plan, None) });
     let mut packets = Vec::new();
     for t in (0..).map(|k| gyro.tick(k)).take_while(|t| t.0 < 2 * NANOS) {
-        let reading = Reading {
-            value: Vector::new((t.0 / 1_000_000) as f64 * 1e-3, 0.0, 0.0),
-            ..Reading::zero(0, SensorKind::Gyro)
-        };
+        let value = Vector::new((t.0 / 1_000_000) as f64 * 1e-3, 0.0, 0.0);
+        let reading = Reading::zero(0, SensorKind::Gyro).with_body(value);
         encoder.encode(&Now { t, truth: &at_rest(t), readings: &[reading] }, &mut packets);
     }
     packets.retain(|packet| packet.bytes().len() != 56);

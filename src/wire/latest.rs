@@ -6,6 +6,7 @@
 
 use super::{Newest, Packet, Setup};
 use crate::earth::SEA_LEVEL_PRESSURE;
+use crate::geometry::{Body, Vector};
 use crate::schedule::Ticks;
 use crate::sensor::{ByKind, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
@@ -82,10 +83,10 @@ impl Latest {
 
 /// The barometer's newest reading, or the standard atmosphere's at sea level where the scene has none, Pa.
 pub(super) fn pascals(newest: &ByKind<Option<Reading>>) -> f64 {
-    newest[SensorKind::Baro as usize].map_or(SEA_LEVEL_PRESSURE, |reading| reading.value.v.x)
+    super::pressure(newest, SensorKind::Baro).unwrap_or(SEA_LEVEL_PRESSURE)
 }
 
-/// A reading's axes in so many of a unit, 0 where there is none.
-pub(super) fn in_units(reading: Option<&Reading>, unit: f64) -> [f32; 3] {
-    reading.map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| (x / unit) as f32))
+/// Body axes in so many of a unit, 0 where there are none.
+pub(super) fn in_units(value: Option<Vector<Body>>, unit: f64) -> [f32; 3] {
+    value.map_or([0.0; 3], |value| value.v.to_array().map(|x| (x / unit) as f32))
 }

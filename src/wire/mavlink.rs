@@ -11,7 +11,7 @@ mod gps;
 
 pub use extra::{Extra, Extras};
 
-use super::{Encoder, EverySecond, Newest, Now, Packet, Protocol, Setup};
+use super::{Encoder, EverySecond, Newest, Now, Packet, Protocol, Setup, body, pressure};
 use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, Claims, SensorKind};
 use crate::time::SimTime;
@@ -33,9 +33,13 @@ const DIALECT_VERSION: u8 = 3;
 
 pub(super) const MICROTESLA_A_GAUSS: f64 = 100.0;
 pub(super) const PASCALS_A_HECTOPASCAL: f64 = 100.0;
-/// The bits of `fields_updated` of gyro, accel, mag and baro.
-const MASKS: [u32; 4] = [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG, hil_sensor::PRESSURE];
-/// The kinds of sensor of which HIL_SENSOR has fields.
+/// The kinds of sensor that HIL_SENSOR carries, and their bits of `fields_updated`.
+const MASKS: [(SensorKind, u32); 4] = [
+    (SensorKind::Gyro, hil_sensor::GYRO),
+    (SensorKind::Accel, hil_sensor::ACCEL),
+    (SensorKind::Mag, hil_sensor::MAG),
+    (SensorKind::Baro, hil_sensor::PRESSURE),
+];
 const KINDS: u8 = 0b1111;
 
 pub(super) struct Mavlink {
@@ -122,19 +126,20 @@ impl Mavlink {
     fn hil_sensor(&self, t: SimTime) -> Message {
         let readings = self.readings();
         let value = |kind, unit| readings.over(kind, unit).map(|x| x as f32);
-        let fresh = (0..MASKS.len()).filter(|i| self.newest.fresh >> i & 1 == 1).map(|i| MASKS[i]);
+        let fresh = MASKS.iter().filter(|(kind, _)| self.newest.fresh >> *kind as u8 & 1 == 1);
+        let fresh = fresh.map(|(_, mask)| *mask);
         let temperature = readings.temperature();
         let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
         let baro = self.newest.values[SensorKind::Baro as usize];
-        let pressure = baro.map(|reading| reading.value.v.x);
+        let absolute = pressure(&self.newest.values, SensorKind::Baro);
         Message::HilSensor(hil_sensor::Repr {
             time_usec: t.0 as u64 / 1000,
             accel: value(SensorKind::Accel, 1.0),
             gyro: value(SensorKind::Gyro, 1.0),
             mag: value(SensorKind::Mag, MICROTESLA_A_GAUSS),
-            abs_pressure: pressure.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
+            abs_pressure: absolute.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
             diff_pressure: 0.0,
-            pressure_alt: pressure.map_or(0.0, |pascals| pressure_altitude(pascals) as f32),
+            pressure_alt: absolute.map_or(0.0, |pascals| pressure_altitude(pascals) as f32),
             temperature: temperature.or(baro.map(|reading| reading.temperature)).unwrap_or(0.0) as f32,
             fields_updated: fresh.fold(0, |mask, bits| mask | bits),
             id: 0,
@@ -165,8 +170,7 @@ struct Readings<'a> {
 impl Readings<'_> {
     /// A reading in this unit; 0 before the first.
     fn over(&self, kind: SensorKind, unit: f64) -> [f64; 3] {
-        self.newest.values[kind as usize]
-            .map_or([0.0; 3], |reading| reading.value.v.to_array().map(|x| x / unit))
+        body(&self.newest.values, kind).map_or([0.0; 3], |value| value.v.to_array().map(|x| x / unit))
     }
 
     /// °C, where the scene gives one.
@@ -188,7 +192,7 @@ impl Encoder for Mavlink {
             let bytes = self.bytes(&message, &mut buffer);
             out.push(self.newest.packet(t, KINDS, bytes));
         }
-        let fix = readings.iter().find_map(|reading| reading.fix);
+        let fix = readings.iter().find_map(|reading| Some(reading.position()?.fix));
         if let (Some(fix), Some(claims)) = (fix, &self.claims) {
             let message = gps::message(t, &fix, claims);
             let mut buffer = [0; mavlink::MAX_LEN];

@@ -6,7 +6,7 @@
 
 use super::latest::{Latest, in_units, pascals};
 use super::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
-use super::{Encoder, Now, Packet, Setup, stopped};
+use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::earth::STANDARD_GRAVITY;
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Reading, SensorKind};
@@ -40,7 +40,7 @@ impl Encoder for Mip {
             [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
         {
             still[kind as usize] =
-                self.kinds.contains(&kind).then(|| Reading { value, ..Reading::zero(0, kind) });
+                self.kinds.contains(&kind).then(|| Reading::zero(0, kind).with_body(value));
         }
         let mut buffer = [0; mip::MAX_LEN];
         let len = write(&still, &mut buffer);
@@ -54,10 +54,7 @@ impl Encoder for Mip {
 
 /// The packet of the newest readings.
 fn write(newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
-    let field = |kind: SensorKind, unit: f64| {
-        let reading = newest[kind as usize].as_ref();
-        reading.map(|reading| in_units(Some(reading), unit))
-    };
+    let field = |kind: SensorKind, unit: f64| body(newest, kind).map(|value| in_units(Some(value), unit));
     let imu = imu::Repr {
         // A millibar is a hectopascal.
         pressure: Some((pascals(newest) / PASCALS_A_HECTOPASCAL) as f32),

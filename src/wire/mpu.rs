@@ -3,9 +3,9 @@
 //! Readings become counts on the chip's axes. A sensor whose scene gives no such scale is carried at ±2000 °/s,
 //! ±16 g and 0.15 µT with ASA 128, and 25 °C.
 
-use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup};
+use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup, body};
 use crate::earth::STANDARD_GRAVITY;
-use crate::sensor::{ByKind, Mount, REFERENCE_TEMPERATURE, Reading, SensorKind, SensorPlan, lsb};
+use crate::sensor::{ByKind, Mount, REFERENCE_TEMPERATURE, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
 use ratetable_protocols::mpu::registers::{self, Chip};
 use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
@@ -75,8 +75,8 @@ impl Mpu {
     /// The newest reading in counts on the chip's axes.
     fn counts(&self, kind: SensorKind) -> [i16; 3] {
         let (mount, count) = self.scales[kind as usize];
-        let Some(reading) = self.newest.values[kind as usize] else { return [0; 3] };
-        let chip = mount.to_chip(reading.value).v.to_array();
+        let Some(value) = body(&self.newest.values, kind) else { return [0; 3] };
+        let chip = mount.to_chip(value).v.to_array();
         match kind {
             SensorKind::Mag => registers::swap_mag_axes(chip).map(|x| registers::mag_raw(x, ASA)),
             _ => chip.map(|x| registers::nearest(x / count)),
@@ -106,8 +106,8 @@ impl Mpu {
             SensorKind::Mag => {
                 let (mount, count) = self.scales[kind as usize];
                 // AK8963 (MS1356-E): it overflows when |X| + |Y| + |Z| reaches the full scale.
-                let sum = |reading: &Reading| mount.to_chip(reading.value).v.abs().element_sum();
-                let field = self.newest.values[kind as usize].as_ref().map_or(0.0, sum);
+                let sum = |value| mount.to_chip(value).v.abs().element_sum();
+                let field = body(&self.newest.values, kind).map_or(0.0, sum);
                 let overflow = if field > f64::from(registers::MAG_MAX_COUNT) * count {
                     registers::ST2_OVERFLOW
                 } else {

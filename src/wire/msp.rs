@@ -5,7 +5,7 @@
 //! stream ends with a vehicle that has stopped.
 
 use super::latest::{Latest, pascals};
-use super::{Encoder, Now, Packet, Setup, stopped};
+use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
 use crate::geometry::{Body, Nav, Vector};
 use crate::motion::Truth;
@@ -50,15 +50,16 @@ impl Encoder for Msp {
         let to_true_north = to_true_north(now.truth);
         self.turned.clear();
         self.turned.extend(now.readings.iter().map(|reading| match reading.kind {
-            SensorKind::Mag => Reading { value: reading.value + to_true_north, ..*reading },
+            SensorKind::Mag => {
+                reading.with_body(reading.body().map_or(Vector::ZERO, |mag| mag.value + to_true_north))
+            }
             _ => *reading,
         }));
         self.last = Some(*now.truth);
         let strength = now.truth.field.length();
         let mut buffer = [0; msp::MAX_LEN];
         self.latest.encode(now.t, &self.turned, out, &mut buffer, |_, newest, buffer| {
-            let value =
-                |kind: SensorKind| newest[kind as usize].map_or(Vector::ZERO, |reading| reading.value);
+            let value = |kind| body(newest, kind).unwrap_or(Vector::ZERO);
             frame(
                 [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value),
                 strength,

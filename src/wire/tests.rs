@@ -63,7 +63,7 @@ fn of(readings: &[(SimTime, Reading)], kind: SensorKind) -> Vec<&(SimTime, Readi
 
 /// Counts on the chip's axes, z up, against the reading: within half a count.
 fn counts_match(counts: [i16; 3], reading: &Reading, count: f64) {
-    let chip = Mount::flu().to_chip(reading.value).v.to_array();
+    let chip = Mount::flu().to_chip(reading.body().unwrap().value).v.to_array();
     for (raw, value) in counts.iter().zip(chip) {
         assert!(
             (f64::from(*raw) * count - value).abs() <= 0.5 * count * (1.0 + 1e-9),
@@ -341,7 +341,8 @@ fn mavlink_carries_the_newest_of_each_sensor_with_a_bit_for_each_that_ticked() {
             assert_eq!(packet.carries >> kind as u8 & 1 == 1, ticks > 0);
             assert_eq!(packet.replaced[kind as usize] as usize, ticks.saturating_sub(1));
             replaced[kind as usize] += packet.replaced[kind as usize];
-            let expected = newest(kind, packet.due).value.v.to_array().map(|x| (x / unit) as f32);
+            let expected =
+                newest(kind, packet.due).body().unwrap().value.v.to_array().map(|x| (x / unit) as f32);
             assert_eq!(values, expected, "{kind} in Forward-Right-Down, the field in gauss");
         }
         assert_eq!(seen.fields_updated, mask);
@@ -404,7 +405,7 @@ fn text_reads_back_to_the_same_bits_in_the_scenes_axes() {
         assert_eq!(csv[0].bytes(), b"t_ns,sensor,x,y,z\n");
         assert_eq!((csv.len() - 1, jsonl.len()), (readings.len(), readings.len()));
         for (((t, reading), csv), json) in readings.iter().zip(&csv[1..]).zip(&jsonl) {
-            let bits = axes.body_out(reading.value).to_array().map(f64::to_bits);
+            let bits = axes.body_out(reading.body().unwrap().value).to_array().map(f64::to_bits);
             let line = std::str::from_utf8(csv.bytes()).unwrap().strip_suffix('\n').unwrap();
             let cells: Vec<_> = line.split(',').collect();
             assert_eq!((cells[0], cells[1]), (t.0.to_string().as_str(), reading.kind.name()));
@@ -550,7 +551,7 @@ fn mavlink_has_the_pressure_with_its_bits_where_the_barometer_ticked() {
             let Message::HilSensor(seen) = message else { continue };
             let ticks = baro.iter().any(|(t, _)| *t == packet.due);
             let (_, newest) = baro.iter().rfind(|(t, _)| *t <= packet.due).unwrap();
-            let pascals = newest.value.v.x;
+            let pascals = newest.pressure().unwrap().value;
             assert_eq!(seen.abs_pressure, (pascals / 100.0) as f32);
             assert_eq!(seen.pressure_alt, crate::earth::pressure_altitude(pascals) as f32);
             assert_eq!(seen.temperature, degrees);
@@ -596,11 +597,11 @@ fn a_line_of_text_has_what_the_aid_says() {
         assert_eq!((cells[0].parse(), cells[1]), (Ok(t.0), reading.kind.name()));
         match reading.kind {
             SensorKind::Baro => {
-                assert_eq!(cells[2].parse(), Ok(reading.value.v.x));
+                assert_eq!(cells[2].parse(), Ok(reading.pressure().unwrap().value));
                 assert_eq!(cells[3..], ["", ""]);
             }
             SensorKind::Gps => {
-                let fix = reading.fix.unwrap();
+                let fix = reading.position().unwrap().fix;
                 assert_eq!(cells[2].parse(), Ok(fix.position.latitude.to_degrees()));
                 assert_eq!(cells[3].parse(), Ok(fix.position.longitude.to_degrees()));
                 assert_eq!(cells[4].parse(), Ok(fix.position.altitude));
@@ -622,8 +623,10 @@ fn a_line_of_text_has_what_the_aid_says() {
         altitude: longest,
     };
     let velocity = Vector::new(longest, longest, longest);
-    let fix = Fix { position: place, velocity, true_position: place, true_velocity: velocity };
-    let reading = Reading { fix: Some(fix), ..Reading::zero(0, SensorKind::Gps) };
+    let mut reading = Reading::zero(0, SensorKind::Gps);
+    if let Measurement::Position(position) = &mut reading.measurement {
+        position.fix = Fix { position: place, velocity };
+    }
     let plan = plan("duration = \"1 s\"\n[gps]\n");
     let mut lines = Vec::new();
     encoder(Protocol::Jsonl, &setup(&plan, None)).encode(

@@ -2,7 +2,7 @@
 
 use super::{Encoder, Now, Packet, Setup};
 use crate::geometry::Axes;
-use crate::sensor::{Fix, Reading, SensorKind};
+use crate::sensor::{Fix, Measured, Measurement, Position, Reading, SensorKind};
 use crate::time::SimTime;
 use std::io::Write;
 
@@ -35,17 +35,19 @@ impl Text {
     }
 
     fn write(&mut self, t: SimTime, reading: &Reading) {
-        let v = self.axes.body_out(reading.value);
-        match (reading.kind, reading.fix) {
-            (SensorKind::Baro, _) => self.cells(t, reading.kind, &[("pa", v.x)]),
-            (_, Some(Fix { position, velocity, .. })) => {
+        match &reading.measurement {
+            Measurement::Triad(Measured { value, .. }) => {
+                let v = self.axes.body_out(*value);
+                self.cells(t, reading.kind, &[("x", v.x), ("y", v.y), ("z", v.z)]);
+            }
+            Measurement::Pressure(Measured { value, .. }) => self.cells(t, reading.kind, &[("pa", *value)]),
+            Measurement::Position(Position { fix: Fix { position, velocity }, .. }) => {
                 let [vn, ve, vd] = velocity.v.to_array();
                 let (lat, lon) = (position.latitude.to_degrees(), position.longitude.to_degrees());
                 let place = [("lat", lat), ("lon", lon), ("alt", position.altitude)];
                 let cells = [place, [("vn", vn), ("ve", ve), ("vd", vd)]].concat();
                 self.cells(t, reading.kind, &cells);
             }
-            _ => self.cells(t, reading.kind, &[("x", v.x), ("y", v.y), ("z", v.z)]),
         }
     }
 

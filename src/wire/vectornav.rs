@@ -7,7 +7,7 @@
 
 use super::latest::{Latest, in_units, pascals};
 use super::mavlink::MICROTESLA_A_GAUSS;
-use super::{Encoder, Now, Packet, Setup, stopped};
+use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::geometry::{Euler, Vector};
 use crate::motion::Truth;
 use crate::sensor::{ByKind, REFERENCE_TEMPERATURE, Reading, SensorKind};
@@ -58,7 +58,7 @@ impl Encoder for Vectornav {
             [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
         {
             let value = if kind == SensorKind::Mag && !self.has_mag { Vector::ZERO } else { value };
-            still[kind as usize] = Some(Reading { value, ..Reading::zero(0, kind) });
+            still[kind as usize] = Some(Reading::zero(0, kind).with_body(value));
         }
         let mut buffer = [0; MAX_LEN];
         let len = write(t, &still, &mut buffer);
@@ -72,9 +72,10 @@ impl Encoder for Vectornav {
 
 /// The IMU packet of the newest readings.
 fn write(t: SimTime, newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
-    let [gyro, accel, mag] =
-        [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(|kind| newest[kind as usize].as_ref());
-    let warm = gyro.or(accel).map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature);
+    let warm =
+        [SensorKind::Gyro, SensorKind::Accel].into_iter().find_map(|kind| newest[kind as usize].as_ref());
+    let warm = warm.map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature);
+    let [gyro, accel, mag] = SensorKind::TRIADS.map(|kind| body(newest, kind));
     let (gyro, accel) = (in_units(gyro, 1.0), in_units(accel, 1.0));
     let imu = imu::Repr {
         time_ns: t.0 as u64,

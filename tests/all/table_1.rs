@@ -23,7 +23,10 @@ fn play(plan: &Plan, kind: SensorKind) -> Seen {
     let mut seen = Seen { error: empty(), reading: empty(), truth: empty() };
     let Ok(()) = Player::new(plan, plan.duration, BLOCK).play(|moment| {
         for reading in moment.readings.iter().filter(|reading| reading.kind == kind) {
-            let (value, truth) = (plan.axes.body_out(reading.value), plan.axes.body_out(reading.truth));
+            let (value, truth) = (
+                plan.axes.body_out(reading.body().unwrap().value),
+                plan.axes.body_out(reading.body().unwrap().truth),
+            );
             for axis in 0..3 {
                 seen.error[axis].push(value[axis] - truth[axis]);
                 seen.reading[axis].push(value[axis]);

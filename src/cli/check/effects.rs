@@ -1,11 +1,11 @@
 //! The table of effects for a person: what the scene models, and what it leaves out.
 
-use super::{noise, shown};
+use super::noise;
 use crate::cli::terminal::Stream;
 use crate::effects::{Effect, TICKS, Verdict, effects};
 use crate::report::number;
 use crate::scene::Plan;
-use crate::sensor::{SensorPlan, lsb};
+use crate::sensor::{SensorPlan, Shown, lsb};
 
 pub(super) fn text(plan: &Plan) -> String {
     let effects = effects(plan);
@@ -35,7 +35,7 @@ pub(super) fn text(plan: &Plan) -> String {
 
 /// From which size on a sensor shows an effect.
 fn shows(sensor: &SensorPlan) -> String {
-    let (unit, _, scale) = shown(sensor.kind);
+    let &Shown { unit, scale, .. } = &sensor.kind.row().shown;
     let amount = |value: f64| number(value * scale);
     let half =
         lsb(&sensor.values, sensor.kind).map(|lsb| format!("half a count is {} {unit}", amount(lsb / 2.0)));
@@ -50,7 +50,7 @@ fn shows(sensor: &SensorPlan) -> String {
 }
 
 fn row(effect: &Effect) -> Vec<String> {
-    let (unit, _, scale) = shown(effect.sensor);
+    let &Shown { unit, scale, .. } = &effect.sensor.row().shown;
     let key = effect.key.clone();
     let by = match (effect.verdict, effect.modelled) {
         (Verdict::Missing, _) => {

@@ -1,12 +1,12 @@
 //! The plan for a person.
 
 use super::effects;
-use super::{Checked, Noise, budgets, drawn, noise, shown, terms, warnings};
+use super::{Checked, Noise, budgets, drawn, noise, terms, warnings};
 use crate::cli::terminal::Stream;
 use crate::earth;
 use crate::report::{count, number};
 use crate::scene::{Drawn, Plan, Runs};
-use crate::sensor::{Claims, Sampling, SensorKind, SensorPlan, lsb};
+use crate::sensor::{Claims, Sampling, SensorKind, SensorPlan, Shown, lsb};
 use crate::time::SimTime;
 
 pub(super) fn text(checked: &Checked<'_>) -> String {
@@ -107,7 +107,7 @@ fn position(plan: &Plan) -> String {
 
 fn sensors(plan: &Plan) -> String {
     let rows = plan.sensors.iter().map(|sensor| {
-        let (unit, walk_unit, scale) = shown(sensor.kind);
+        let &Shown { unit, walk_unit, scale, .. } = &sensor.kind.row().shown;
         let amount = |value: f64, unit: &str| format!("{} {unit}", number(value * scale));
         let noise = noise(sensor);
         let say = |pick: fn(&Noise) -> f64, unit: &str| {
@@ -140,7 +140,7 @@ fn sensors(plan: &Plan) -> String {
 
 /// How a sensor samples, and what else the scene says of it.
 fn manner(sensor: &SensorPlan) -> String {
-    let (unit, _, scale) = shown(sensor.kind);
+    let &Shown { unit, scale, .. } = &sensor.kind.row().shown;
     let mut text = format!(
         "{}: {}",
         sensor.kind,

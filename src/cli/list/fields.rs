@@ -3,6 +3,7 @@
 use super::{List, Refusal};
 use crate::cli::{listen, run, score, timing};
 use crate::scene::{Destination, Output, Plan};
+use crate::sensor::SensorKind;
 use serde_json::Value;
 
 /// Every number of each report, with its unit.
@@ -15,9 +16,10 @@ pub fn list() -> Result<List, Refusal> {
     let timing = serde_json::to_value(timing::shape(&plan, &output))?;
     let listen = serde_json::to_value(listen::shape(&to))?;
     let score = serde_json::json!({ "estimates": [serde_json::to_value(score::shape("estimate"))?] });
+    let played = format!("NAME of sensors: {}; of links their number, from 0 on", SensorKind::names());
     let reports = [
-        ("run", run, "NAME of sensors: gyro, accel, mag, baro, gps; of links their number, from 0 on"),
-        ("timing", timing, "NAME of sensors: gyro, accel, mag, baro, gps; of links their number, from 0 on"),
+        ("run", run, &*played),
+        ("timing", timing, &*played),
         ("listen", listen, "NAME of sensors: gyro, accel, …, a second one gyro-2; of links 0"),
         ("score", score, "NAME: the estimate's; without `estimates.NAME.` a limit is on each of them"),
     ];

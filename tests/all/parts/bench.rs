@@ -193,7 +193,7 @@ pub fn ends(part: &str, kind: SensorKind, range: f64, more: &str) -> Ends {
         SensorKind::Accel => {
             format!("[[force]]\nacceleration = \"[{beyond}, {beyond}, {G}] m/s^2\"\nduration = \"1 s\"\n")
         }
-        SensorKind::Mag | SensorKind::Baro | SensorKind::Gps => {
+        _ => {
             format!("[earth]\nfield = \"[{beyond}, {beyond}, 0] uT\"\n")
         }
     };

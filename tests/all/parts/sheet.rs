@@ -37,7 +37,7 @@ impl Sheet {
             (SensorKind::Gyro, _) => (dps, "°/s"),
             (SensorKind::Accel, "counts") => (G, "g"),
             (SensorKind::Accel, _) => (1e-3 * G, "mg"),
-            (SensorKind::Mag | SensorKind::Baro | SensorKind::Gps, _) => (1.0, "µT"),
+            _ => (1.0, "µT"),
         }
     }
 

@@ -77,11 +77,11 @@ fn units(config: &[u8]) -> [f64; 3] {
 /// A reading in counts along the axes of its chip, which lies with x forward, y left and z up; the AK8963 in it has
 /// its x and y exchanged and z down.
 fn counts(reading: &Reading, unit: f64) -> [f64; 3] {
-    let [forward, right, down] = reading.value.v.to_array().map(|component| component / unit);
+    let [forward, right, down] = reading.body().unwrap().value.v.to_array().map(|component| component / unit);
     match reading.kind {
         SensorKind::Gyro | SensorKind::Accel => [forward, -right, -down],
         SensorKind::Mag => [-right, forward, down],
-        SensorKind::Baro | SensorKind::Gps => panic!("not in `mpu`"),
+        _ => panic!("not in `mpu`"),
     }
 }
 

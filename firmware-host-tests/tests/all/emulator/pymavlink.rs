@@ -90,7 +90,7 @@ fn check_values(plan: &Plan, got: &Value) {
             (SensorKind::Accel, ["xacc", "yacc", "zacc"], 1.0),
             (SensorKind::Mag, ["xmag", "ymag", "zmag"], 100.0),
         ] {
-            let reading = newest_at(t_us, kind).value.v.to_array();
+            let reading = newest_at(t_us, kind).body().unwrap().value.v.to_array();
             for (name, value) in names.into_iter().zip(reading) {
                 let field = message[name].as_f64().expect(name) * scale;
                 assert!((field - value).abs() <= 1e-7 * value.abs(), "{which} {name}: {field} for {value}");

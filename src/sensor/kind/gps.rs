@@ -1,0 +1,110 @@
+//! `[gps]`: a receiver's position and velocity, and what it claims of them.
+
+use super::{Row, Senses, Shape, Shown, Table};
+use crate::keys::{Key, Takes, Values};
+use crate::quantity::{Kind, Sign};
+use crate::random::Normals;
+use crate::sensor::{Block, Kinds, SensorKind, Stage, Term, TermKind, units};
+use glam::DVec3;
+
+pub(super) static ROW: Row = Row {
+    name: "gps",
+    shape: Shape::Position,
+    senses: Senses::Course,
+    components: &["north", "east", "down"],
+    unit: "m",
+    column_unit: "m",
+    units: &units::GPS_UNITS,
+    usual_rate: Some("5 Hz"),
+    keys,
+    may_repeat: true,
+    shown: Shown {
+        title: "GPS position from the start",
+        label: "displacement (m)",
+        in_chart: |value| value,
+        unit: "m",
+        walk_unit: "m·√s",
+        scale: 1.0,
+    },
+    table: Table {
+        convention: Some((
+            "position",
+            "WGS 84: geodetic latitude and longitude, deg, north and east positive; altitude above the ellipsoid, m; velocity north, east and down (whatever the nav frame), m/s",
+        )),
+        note: Some("position and velocity as the receiver says them, then the true ones."),
+        derived: None,
+    },
+};
+
+fn keys() -> Vec<Key> {
+    let length = Takes::Scalar(Kind::LENGTH.signed(Sign::NonNegative));
+    let key = |name, takes, default, about| Key { name, takes, default: Some(default), about };
+    vec![
+        key("eph", length, "1 m", "horizontal accuracy that it claims"),
+        key("epv", length, "1.5 m", "vertical accuracy that it claims"),
+        key("satellites", Takes::Whole(0, 254), "12", "how many it claims to use"),
+    ]
+}
+
+/// What a receiver says of its own fix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Claims {
+    /// Horizontal accuracy, m.
+    pub eph: f64,
+    /// Vertical accuracy, m.
+    pub epv: f64,
+    /// Satellites used.
+    pub satellites: u8,
+}
+
+impl Claims {
+    /// Of a plan's values.
+    pub fn of(values: &Values) -> Claims {
+        Claims {
+            eph: values.scalar("eph").unwrap_or_default(),
+            epv: values.scalar("epv").unwrap_or_default(),
+            satellites: values.whole("satellites").unwrap_or_default() as u8,
+        }
+    }
+}
+
+/// White noise on the velocity of a fix: a fresh normal number each sample and axis.
+pub(crate) static VELOCITY_NOISE: TermKind = TermKind {
+    name: "velocity_noise",
+    about: "a fresh normal number each sample on a receiver's velocity",
+    serves: Kinds::of(&[SensorKind::Gps]),
+    stage: Stage::Reading,
+    needs: &[],
+    keys: |_| {
+        vec![Key {
+            name: "velocity_noise_std",
+            takes: Takes::PerAxis(Kind::SPEED.signed(Sign::NonNegative)),
+            default: Some("0"),
+            about: "standard deviation of each sample of the velocity",
+        }]
+    },
+    build: |values, context| {
+        let sigma = values.vector("velocity_noise_std").unwrap_or_default();
+        Ok((sigma != DVec3::ZERO).then(|| {
+            Box::new(VelocityNoise { sigma, normals: context.normals("velocity_noise", sigma) })
+                as Box<dyn Term>
+        }))
+    },
+};
+
+struct VelocityNoise {
+    sigma: DVec3,
+    normals: Normals,
+}
+
+impl Term for VelocityNoise {
+    #[inline(always)]
+    fn apply(&mut self, block: &mut Block) {
+        let (sigma, velocity) = (self.sigma.to_array(), block.velocity.each_mut().map(Vec::as_mut_slice));
+        self.normals.zip(velocity, |axis, velocity, normal| *velocity += sigma[axis] * normal);
+    }
+
+    fn normals(&self) -> usize {
+        self.normals.count()
+    }
+}
