@@ -2,11 +2,9 @@
 
 use std::fmt;
 use std::path::PathBuf;
-use std::str::FromStr;
 
-use super::LinkError;
 use super::baud::DEFAULT_BAUD;
-use super::scheme;
+use super::endpoint::Endpoint;
 
 /// The address of a link, spelled as `pymavlink` and `rust-mavlink` spell theirs.
 ///
@@ -30,13 +28,13 @@ pub enum Address {
         baud: Option<u32>,
     },
     /// A TCP socket that waits for one peer to connect, and turns all others away.
-    TcpIn(Place),
+    TcpIn(Endpoint),
     /// A TCP connection to a listening peer.
-    TcpOut(Place),
+    TcpOut(Endpoint),
     /// A UDP socket that answers whoever sends to it first.
-    UdpIn(Place),
+    UdpIn(Endpoint),
     /// A UDP socket that sends to one place.
-    UdpOut(Place),
+    UdpOut(Endpoint),
     /// A file; what it held is replaced.
     File {
         /// The file.
@@ -91,18 +89,6 @@ impl Address {
     }
 }
 
-impl FromStr for Address {
-    type Err = LinkError;
-
-    fn from_str(spelled: &str) -> Result<Self, LinkError> {
-        scheme::parse(spelled.trim()).map_err(|problem| LinkError::Spelling {
-            spelled: spelled.to_owned(),
-            problem: problem.what,
-            right: problem.right,
-        })
-    }
-}
-
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -131,53 +117,13 @@ fn comma(f: &mut fmt::Formatter<'_>, baud: Option<u32>) -> fmt::Result {
     baud.map_or(Ok(()), |baud| write!(f, ",{baud}"))
 }
 
-/// A place in a network: a name or an address, and a port.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Place {
-    /// A host's name or its address, an IPv6 one without brackets.
-    pub host: String,
-    /// The port; 0 asks a listening link for any free one.
-    pub port: u16,
-}
-
-impl Place {
-    /// A place by its name and port.
-    pub fn new(host: impl Into<String>, port: u16) -> Self {
-        let host = host.into();
-        Self { host, port }
-    }
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { host, port } = self;
-        match host.contains(':') {
-            true => write!(f, "[{host}]:{port}"),
-            false => write!(f, "{host}:{port}"),
-        }
-    }
-}
-
-/// What is wrong with a spelling, and what would be right.
-#[derive(Debug)]
-pub(super) struct Problem {
-    what: String,
-    right: String,
-}
-
-impl Problem {
-    pub(super) fn new(what: impl Into<String>, right: impl Into<String>) -> Self {
-        Self { what: what.into(), right: right.into() }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::SCHEMES;
     use super::*;
 
-    fn place(host: &str, port: u16) -> Place {
-        Place::new(host, port)
+    fn place(host: &str, port: u16) -> Endpoint {
+        Endpoint::new(host, port)
     }
 
     fn pty(path: Option<&str>, baud: Option<u32>) -> Address {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::address::Problem;
+use super::problem::{self, Problem};
 
 /// The speed of a serial port that is given none: 921 600 baud.
 pub const DEFAULT_BAUD: u32 = 921_600;
@@ -42,7 +42,7 @@ pub(super) fn path_and_speed(
     example: &str,
 ) -> Result<(PathBuf, Option<u32>), Problem> {
     if let Some((path, digits)) = rest.rsplit_once(',') {
-        let there = super::scheme::path(path, example)?;
+        let there = problem::path(path, example)?;
         return Ok((there, Some(speed(&format!("{scheme}{path}"), digits)?)));
     }
     if let Some((path, digits)) = rest.rsplit_once(':')
@@ -50,5 +50,5 @@ pub(super) fn path_and_speed(
     {
         return Err(Problem::new("the speed stands after a comma", format!("say {scheme}{path},{digits}")));
     }
-    Ok((super::scheme::path(rest, example)?, None))
+    Ok((problem::path(rest, example)?, None))
 }

@@ -5,8 +5,9 @@ use std::io::{self, Write};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::path::Path;
 
-use super::address::{Address, Problem};
-use super::scheme::{self, Scheme};
+use super::address::Address;
+use super::problem::{self, Problem};
+use super::spelling::Scheme;
 use super::sender::{Carry, Out, Sender};
 use super::{Kind, Link, LinkError};
 
@@ -19,7 +20,7 @@ pub(super) const SCHEME: Scheme = Scheme {
 };
 
 fn parse(rest: Option<&str>) -> Result<Address, Problem> {
-    let path = scheme::path(rest.unwrap_or_default(), "file:/tmp/packets.bin")?;
+    let path = problem::path(rest.unwrap_or_default(), "file:/tmp/packets.bin")?;
     Ok(Address::File { path })
 }
 

@@ -1,6 +1,7 @@
 //! Whether two paths, or two links, are one thing: by what a path leads to, not by how it is spelled.
 
-use super::address::{Address, Place};
+use super::address::Address;
+use super::endpoint::Endpoint;
 use std::ffi::OsString;
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
@@ -106,12 +107,12 @@ impl Address {
 }
 
 /// Whether two that listen ask for one port.
-fn meets(one: &Place, two: &Place) -> bool {
-    let any = |place: &Place| ["0.0.0.0", "::", "*"].contains(&place.host.as_str());
+fn meets(one: &Endpoint, two: &Endpoint) -> bool {
+    let any = |place: &Endpoint| ["0.0.0.0", "::", "*"].contains(&place.host.as_str());
     one.port != 0 && one.port == two.port && (host(one) == host(two) || any(one) || any(two))
 }
 
-fn host(place: &Place) -> &str {
+fn host(place: &Endpoint) -> &str {
     match place.host.as_str() {
         "localhost" | "::1" => "127.0.0.1",
         host => host,

@@ -1,7 +1,6 @@
 //! A link opened to hear what somebody sends, nothing being sent from here but, where asked for, a greeting.
 
 use super::address::Address;
-use super::receiver::{Receiver, Source};
 use super::{Kind, Link, LinkError};
 use crate::os::Readable;
 use bytes::BytesMut;
@@ -47,7 +46,7 @@ impl Link {
 
     /// Whether bytes come when they are sent, and not from a recording.
     pub fn is_live(&self) -> bool {
-        !self.receiver.as_ref().is_some_and(|receiver| matches!(receiver.0, Source::Recording(_)))
+        !self.receiver.as_ref().is_some_and(|receiver| receiver.is_recording())
     }
 }
 
@@ -67,23 +66,23 @@ fn from_path(path: &Path) -> io::Result<Link> {
 
 /// A link that only brings what `input` holds.
 fn of(name: &str, input: OwnedFd) -> io::Result<Link> {
-    let source = match FileType::from_raw_mode(fstat(&input)?.st_mode) {
-        FileType::RegularFile => Source::Recording(Recording(File::from(input))),
+    let receiver = match FileType::from_raw_mode(fstat(&input)?.st_mode) {
+        FileType::RegularFile => Recording(File::from(input)).into(),
         FileType::Directory => return Err(io::ErrorKind::IsADirectory.into()),
         _ => {
             fcntl_setfl(&input, fcntl_getfl(&input)? | OFlags::NONBLOCK)?;
             let input = Arc::new(input);
             match Readable::new(input.clone()) {
-                Ok(input) => Source::Pty(input),
+                Ok(input) => input.into(),
                 // What cannot be waited for is always ready, as /dev/null.
                 Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
-                    Source::Recording(Recording(File::from(input.try_clone()?)))
+                    Recording(File::from(input.try_clone()?)).into()
                 }
                 Err(error) => return Err(error),
             }
         }
     };
-    let receiver = Some(Receiver(source));
+    let receiver = Some(receiver);
     Ok(Link { name: name.to_string(), notices: Vec::new(), kind: Kind::Plain, sender: None, receiver })
 }
 

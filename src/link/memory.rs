@@ -8,7 +8,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rtrb::{Consumer, Producer, RingBuffer};
 use tokio::sync::mpsc;
 
-use super::receiver::{Receiver, Source};
 use super::sender::{Carry, Out, Sender};
 use super::{Kind, Link};
 
@@ -19,7 +18,7 @@ pub fn memory(capacity: usize) -> (Link, Far) {
     let switches = Arc::new(Switches::default());
     let out = Ring { producer, switches: Arc::clone(&switches) };
     let far = Far { consumer, switches, answer: Some(answer) };
-    let receiver = Some(Receiver(Source::Memory(answers)));
+    let receiver = Some(answers.into());
     (Link::new("memory", Kind::Plain, Sender::new(out, Carry::packet()), receiver), far)
 }
 

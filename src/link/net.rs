@@ -4,10 +4,11 @@ use std::io;
 use std::net::SocketAddr;
 
 use super::LinkError;
-use super::address::{Address, Place};
+use super::address::Address;
+use super::endpoint::Endpoint;
 
 /// The addresses of a place, IPv4 first.
-pub(super) async fn resolve(address: &Address, place: &Place) -> Result<Vec<SocketAddr>, LinkError> {
+pub(super) async fn resolve(address: &Address, place: &Endpoint) -> Result<Vec<SocketAddr>, LinkError> {
     let unknown =
         |source| LinkError::UnknownHost { link: address.to_string(), host: place.host.clone(), source };
     let found = tokio::net::lookup_host((place.host.as_str(), place.port)).await;
@@ -20,12 +21,12 @@ pub(super) async fn resolve(address: &Address, place: &Place) -> Result<Vec<Sock
 }
 
 /// The first address of a place.
-pub(super) async fn resolve_one(address: &Address, place: &Place) -> Result<SocketAddr, LinkError> {
+pub(super) async fn resolve_one(address: &Address, place: &Endpoint) -> Result<SocketAddr, LinkError> {
     Ok(resolve(address, place).await?[0])
 }
 
 /// Why a place cannot be listened on.
-pub(super) fn cannot_listen(address: &Address, place: &Place, source: io::Error) -> LinkError {
+pub(super) fn cannot_listen(address: &Address, place: &Endpoint, source: io::Error) -> LinkError {
     let why = match source.kind() {
         io::ErrorKind::AddrInUse => "another program has that port; port 0 picks a free one",
         io::ErrorKind::AddrNotAvailable => {
@@ -38,7 +39,7 @@ pub(super) fn cannot_listen(address: &Address, place: &Place, source: io::Error)
 }
 
 /// Why a place cannot be reached.
-pub(super) fn cannot_reach(address: &Address, place: &Place, source: io::Error) -> LinkError {
+pub(super) fn cannot_reach(address: &Address, place: &Endpoint, source: io::Error) -> LinkError {
     let why = match source.kind() {
         io::ErrorKind::ConnectionRefused => {
             "nobody listens there; start the other side first, or wait for it with tcpin"

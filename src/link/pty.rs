@@ -18,10 +18,10 @@ use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
 use rustix::pty::{OpenptFlags, grantpt, ioctl_tiocgptpeer, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-use super::address::{Address, Problem};
+use super::address::Address;
+use super::problem::Problem;
 use super::baud;
-use super::receiver::{Receiver, Source};
-use super::scheme::Scheme;
+use super::spelling::Scheme;
 use super::sender::{Carry, Sender};
 use super::tty::Terminal;
 use super::uart::Uart;
@@ -89,7 +89,7 @@ pub(super) fn open(address: &Address, path: Option<&Path>, baud: Option<u32>) ->
             sender
         }
     };
-    Ok(Link { notices, ..Link::new(name, Kind::Pty(pty), sender, Some(Receiver(Source::Pty(readable)))) })
+    Ok(Link { notices, ..Link::new(name, Kind::Pty(pty), sender, Some(readable.into())) })
 }
 
 /// Makes a raw pair, and the master as something to wait on.

@@ -2,18 +2,18 @@
 
 use std::io;
 
-use bytes::{BufMut, BytesMut};
-use tokio::io::{AsyncRead, AsyncReadExt};
+use bytes::BytesMut;
 use tokio::sync::mpsc;
 
-use super::{listening, serial, tcp, tty, udp};
+use super::stream::read;
+use super::{listening, serial, tcp, udp};
 use crate::os::Readable;
 
 /// The receiving side of a link, for one task.
-pub struct Receiver(pub(super) Source);
+pub struct Receiver(Source);
 
 /// Where the bytes come from, one a kind of link that answers.
-pub(super) enum Source {
+enum Source {
     Pty(Readable),
     Serial(serial::In),
     Tcp(tcp::In),
@@ -24,6 +24,11 @@ pub(super) enum Source {
 }
 
 impl Receiver {
+    /// Whether the bytes were written before, and come as fast as they are read.
+    pub(super) fn is_recording(&self) -> bool {
+        matches!(self.0, Source::Recording(_))
+    }
+
     /// Waits for bytes and appends them to `buffer`: how many, or 0 when the other side has left.
     ///
     /// A read may hold several packets, or a part of one; over UDP it is one datagram. On a link
@@ -44,22 +49,22 @@ impl Receiver {
     }
 }
 
-/// The most that one read takes.
-const ROOM: usize = 4096;
-
-/// Reads from a stream when it has something; 0 when it has ended or broken.
-pub(super) async fn read(stream: &mut (impl AsyncRead + Unpin), buffer: &mut BytesMut) -> io::Result<usize> {
-    loop {
-        buffer.reserve(ROOM);
-        match stream.read_buf(&mut (&mut *buffer).limit(ROOM)).await.map_err(tty::lost) {
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) if has_left(error.kind()) => return Ok(0),
-            answer => return answer,
+/// A kind of link hands its receiving side over by `into`, so that it need not know this table.
+macro_rules! from {
+    ($($input:ty => $kind:ident),* $(,)?) => {$(
+        impl From<$input> for Receiver {
+            fn from(input: $input) -> Receiver {
+                Receiver(Source::$kind(input))
+            }
         }
-    }
+    )*};
 }
 
-fn has_left(kind: io::ErrorKind) -> bool {
-    use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset, NotConnected};
-    matches!(kind, BrokenPipe | ConnectionAborted | ConnectionReset | NotConnected)
+from! {
+    Readable => Pty,
+    serial::In => Serial,
+    tcp::In => Tcp,
+    udp::In => Udp,
+    listening::Recording => Recording,
+    mpsc::UnboundedReceiver<Vec<u8>> => Memory,
 }

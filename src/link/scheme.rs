@@ -1,20 +1,11 @@
 //! The kinds of link there are, as a table: adding a kind is one file and one line here.
 
-use super::address::{Address, Place, Problem};
-use super::{file, pty, serial, stdout, tcp, udp};
-
-/// One way to spell a link.
-#[derive(Clone, Copy, Debug)]
-pub struct Scheme {
-    /// What stands before the first colon.
-    pub name: &'static str,
-    /// How a whole address looks.
-    pub spelling: &'static str,
-    /// What it is, in one line.
-    pub about: &'static str,
-    /// Reads what stands after the first colon; `None` where there is no colon.
-    pub(super) parse: fn(Option<&str>) -> Result<Address, Problem>,
-}
+use super::address::Address;
+use super::endpoint::{LOOPBACK, is_number};
+use super::problem::Problem;
+use super::spelling::Scheme;
+use super::{LinkError, file, pty, serial, stdout, tcp, udp};
+use std::str::FromStr;
 
 /// Every kind of link.
 pub const SCHEMES: &[Scheme] = &[
@@ -45,8 +36,20 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("pts", "pty"),
 ];
 
+impl FromStr for Address {
+    type Err = LinkError;
+
+    fn from_str(spelled: &str) -> Result<Self, LinkError> {
+        parse(spelled.trim()).map_err(|problem| LinkError::Spelling {
+            spelled: spelled.to_owned(),
+            problem: problem.what,
+            right: problem.right,
+        })
+    }
+}
+
 /// Reads an address by the table.
-pub(super) fn parse(spelled: &str) -> Result<Address, Problem> {
+fn parse(spelled: &str) -> Result<Address, Problem> {
     if spelled.starts_with('/') {
         return serial::parse(spelled);
     }
@@ -130,83 +133,4 @@ fn nearest(name: &str) -> Option<&'static str> {
 fn spellings() -> String {
     let all: Vec<_> = SCHEMES.iter().map(|scheme| scheme.spelling).collect();
     all.join(", ")
-}
-
-fn is_number(text: &str) -> bool {
-    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-/// A path that must not be empty.
-pub(super) fn path(rest: &str, example: &str) -> Result<std::path::PathBuf, Problem> {
-    if rest.is_empty() {
-        Err(Problem::new("the path is missing", format!("say where: {example}")))
-    } else {
-        Ok(rest.into())
-    }
-}
-
-/// Where a link listens: `ADDR:PORT`, or `PORT` alone for the loopback. Port 0 picks a free one.
-pub(super) fn listening(name: &str, rest: Option<&str>) -> Result<Place, Problem> {
-    let rest = rest.unwrap_or_default();
-    if is_number(rest) {
-        let port = port(name, rest)?;
-        return Ok(Place::new(LOOPBACK, port));
-    }
-    place(name, rest)
-}
-
-/// Where a link goes to: `ADDR:PORT`.
-pub(super) fn destination(name: &str, rest: Option<&str>) -> Result<Place, Problem> {
-    let rest = rest.unwrap_or_default();
-    if is_number(rest) {
-        return Err(Problem::new(
-            format!("`{rest}` has no address"),
-            format!("say whom to reach: {name}:{LOOPBACK}:{rest}"),
-        ));
-    }
-    let place = place(name, rest)?;
-    if place.port == 0 {
-        return Err(Problem::new(
-            "port 0 can only be listened on",
-            format!("a port from 1 to 65535: {name}:{}:14550", place.host),
-        ));
-    }
-    Ok(place)
-}
-
-const LOOPBACK: &str = "127.0.0.1";
-
-/// `ADDR:PORT`; an IPv6 address stands in brackets.
-fn place(name: &str, rest: &str) -> Result<Place, Problem> {
-    let example = format!("{name}:{LOOPBACK}:14550");
-    if rest.is_empty() {
-        return Err(Problem::new("the address is missing", format!("say {example}")));
-    }
-    let Some((host, digits)) = rest.rsplit_once(':') else {
-        return Err(Problem::new(format!("`{rest}` has no port"), format!("say {name}:{rest}:14550")));
-    };
-    let bracketed = host.strip_prefix('[').and_then(|host| host.strip_suffix(']'));
-    let plain = bracketed.unwrap_or(host);
-    if bracketed.is_none() && (plain.contains(':') || plain.contains('/')) {
-        let hint = if plain.contains('/') {
-            format!("say {name}:{}:{digits}", plain.trim_start_matches('/'))
-        } else {
-            format!("an IPv6 address stands in brackets: {name}:[::1]:14550")
-        };
-        return Err(Problem::new(format!("`{host}` is no address"), hint));
-    }
-    if plain.is_empty() {
-        return Err(Problem::new("the address is missing", format!("say {example}")));
-    }
-    Ok(Place::new(plain, port(name, digits)?))
-}
-
-/// A port's number.
-fn port(name: &str, digits: &str) -> Result<u16, Problem> {
-    digits.parse().map_err(|_| {
-        Problem::new(
-            format!("`{digits}` is no port"),
-            format!("a port is a number up to 65535, as in {name}:{LOOPBACK}:14550"),
-        )
-    })
 }

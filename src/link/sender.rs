@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 /// The longest packet a link takes, in bytes.
-pub const MAX_PACKET: usize = 65_536;
+pub const MAX_WRITE: usize = 65_536;
 
 /// What became of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,11 +61,11 @@ impl Sender {
 
     /// Sends `bytes`, waiting for as long as the link is full; nothing is dropped.
     ///
-    /// `Full`, or `Away`, only after `stop` was set, looked at every 50 ms. More than [`MAX_PACKET`] bytes may then
+    /// `Full`, or `Away`, only after `stop` was set, looked at every 50 ms. More than [`MAX_WRITE`] bytes may then
     /// have been sent in part.
     pub fn send_all(&mut self, bytes: &[u8], stop: &AtomicBool) -> Sent {
         let gather = self.carry.gather != Gather::Never;
-        for part in bytes.chunks(MAX_PACKET) {
+        for part in bytes.chunks(MAX_WRITE) {
             loop {
                 match self.take(part, gather) {
                     Sent::Done => break,
@@ -159,7 +159,7 @@ impl Sender {
     }
 
     fn take(&mut self, packet: &[u8], gather: bool) -> Sent {
-        if packet.len() > MAX_PACKET {
+        if packet.len() > MAX_WRITE {
             return Sent::Gone(io::ErrorKind::InvalidInput);
         }
         if gather && self.carry.fits(packet.len()) {
@@ -282,7 +282,7 @@ impl Carry {
 
     /// For a stream: room for the rest of a packet.
     pub(super) fn packet() -> Self {
-        Self::new(MAX_PACKET, Gather::Never)
+        Self::new(MAX_WRITE, Gather::Never)
     }
 
     /// For datagrams, which go whole or not at all.
@@ -292,12 +292,12 @@ impl Carry {
 
     /// For a file.
     pub(super) fn batch() -> Self {
-        Self::new(4 * MAX_PACKET, Gather::Always)
+        Self::new(4 * MAX_WRITE, Gather::Always)
     }
 
     /// For a pipe that somebody may be watching.
     pub(super) fn lively_batch() -> Self {
-        Self::new(4 * MAX_PACKET, Gather::WhenUnpaced)
+        Self::new(4 * MAX_WRITE, Gather::WhenUnpaced)
     }
 
     fn kept(&self) -> &[u8] {
@@ -398,7 +398,7 @@ mod tests {
     fn a_packet_longer_than_any_is_refused_whole() {
         let (mut link, mut far) = memory(10);
         let mut sender = link.sender();
-        let sent = sender.send(&vec![0; MAX_PACKET + 1]);
+        let sent = sender.send(&vec![0; MAX_WRITE + 1]);
         assert_eq!(sent, Sent::Gone(io::ErrorKind::InvalidInput));
         assert_eq!(far.take(), b"");
     }

@@ -15,13 +15,14 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 use tokio::sync::Mutex;
 use tokio_serial::{ClearBuffer, ErrorKind, SerialPort, SerialPortBuilderExt, SerialStream};
 
-use super::address::{Address, Problem};
+use super::address::Address;
+use super::problem::Problem;
 use super::baud;
 use super::holders::holders;
 use super::plug::{Plug, Plugged};
 use super::ports::ports;
-use super::receiver::{Receiver, Source, read};
-use super::scheme::Scheme;
+use super::stream::read;
+use super::spelling::Scheme;
 use super::sender::{Carry, Sender};
 use super::{Kind, Link, LinkError};
 use crate::os;
@@ -67,7 +68,7 @@ pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, Li
         baud,
     };
     let serial = Serial { plug, _claim: stream };
-    let receiver = Receiver(Source::Serial(input));
+    let receiver = input.into();
     Ok(Link { notices, ..Link::new(path.display(), Kind::Serial(serial), sender, Some(receiver)) })
 }
 

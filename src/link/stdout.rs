@@ -10,8 +10,9 @@ use std::os::fd::{AsFd, BorrowedFd};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{FileType, fstat};
 
-use super::address::{Address, Problem};
-use super::scheme::Scheme;
+use super::address::Address;
+use super::problem::Problem;
+use super::spelling::Scheme;
 use super::sender::{Carry, Out, Sender};
 use super::{Kind, Link, LinkError};
 

@@ -10,10 +10,12 @@ use bytes::BytesMut;
 use tokio::net::TcpListener;
 use tokio::sync::{Mutex, OnceCell};
 
-use super::address::{Address, Place, Problem};
+use super::address::Address;
+use super::endpoint::{self, Endpoint};
+use super::problem::Problem;
 use super::net::{cannot_listen, cannot_reach, resolve, resolve_one};
-use super::receiver::{Receiver, Source, read};
-use super::scheme::{self, Scheme};
+use super::stream::read;
+use super::spelling::Scheme;
 use super::sender::{Carry, Out, Sender};
 use super::{Kind, Link, LinkError};
 use crate::os;
@@ -35,11 +37,11 @@ pub(super) const SCHEME_OUT: Scheme = Scheme {
 };
 
 fn parse_in(rest: Option<&str>) -> Result<Address, Problem> {
-    scheme::listening("tcpin", rest).map(Address::TcpIn)
+    endpoint::listening("tcpin", rest).map(Address::TcpIn)
 }
 
 fn parse_out(rest: Option<&str>) -> Result<Address, Problem> {
-    scheme::destination("tcpout", rest).map(Address::TcpOut)
+    endpoint::destination("tcpout", rest).map(Address::TcpOut)
 }
 
 /// A peer that has not answered in this time will not.
@@ -54,7 +56,7 @@ struct Way {
     stream: OnceCell<TcpStream>,
 }
 
-pub(super) async fn listen(address: &Address, place: &Place) -> Result<Link, LinkError> {
+pub(super) async fn listen(address: &Address, place: &Endpoint) -> Result<Link, LinkError> {
     let local = resolve_one(address, place).await?;
     let refused = |source| cannot_listen(address, place, source);
     let listener = TcpListener::bind(local).await.map_err(refused)?;
@@ -62,7 +64,7 @@ pub(super) async fn listen(address: &Address, place: &Place) -> Result<Link, Lin
     Ok(link(name, Way { listener: Mutex::new(Some(listener)), stream: OnceCell::new() }))
 }
 
-pub(super) async fn connect(address: &Address, place: &Place) -> Result<Link, LinkError> {
+pub(super) async fn connect(address: &Address, place: &Endpoint) -> Result<Link, LinkError> {
     let refused = |source| cannot_reach(address, place, source);
     let addresses = resolve(address, place).await?;
     let connect = tokio::net::TcpStream::connect(addresses.as_slice());
@@ -78,7 +80,7 @@ pub(super) async fn connect(address: &Address, place: &Place) -> Result<Link, Li
 fn link(name: SocketAddr, way: Way) -> Link {
     let way = Arc::new(way);
     let sender = Sender::new(Segments(Arc::clone(&way)), Carry::packet());
-    let receiver = Receiver(Source::Tcp(In { way: Arc::clone(&way), stream: None }));
+    let receiver = In { way: Arc::clone(&way), stream: None }.into();
     Link::new(name, Kind::Tcp(Tcp(way)), sender, Some(receiver))
 }
 

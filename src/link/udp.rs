@@ -10,10 +10,11 @@ use std::sync::Arc;
 use bytes::BytesMut;
 use tokio::sync::OnceCell;
 
-use super::address::{Address, Place, Problem};
+use super::address::Address;
+use super::endpoint::{self, Endpoint};
+use super::problem::Problem;
 use super::net::{cannot_listen, cannot_reach, resolve_one};
-use super::receiver::{Receiver, Source};
-use super::scheme::{self, Scheme};
+use super::spelling::Scheme;
 use super::sender::{Carry, Out, Sender};
 use super::{Kind, Link, LinkError};
 
@@ -34,11 +35,11 @@ pub(super) const SCHEME_OUT: Scheme = Scheme {
 };
 
 fn parse_in(rest: Option<&str>) -> Result<Address, Problem> {
-    scheme::listening("udpin", rest).map(Address::UdpIn)
+    endpoint::listening("udpin", rest).map(Address::UdpIn)
 }
 
 fn parse_out(rest: Option<&str>) -> Result<Address, Problem> {
-    scheme::destination("udpout", rest).map(Address::UdpOut)
+    endpoint::destination("udpout", rest).map(Address::UdpOut)
 }
 
 /// The longest datagram there is.
@@ -56,7 +57,7 @@ struct Way {
     peer: OnceCell<SocketAddr>,
 }
 
-pub(super) async fn listen(address: &Address, place: &Place) -> Result<Link, LinkError> {
+pub(super) async fn listen(address: &Address, place: &Endpoint) -> Result<Link, LinkError> {
     let local = resolve_one(address, place).await?;
     let refused = |source| cannot_listen(address, place, source);
     let plain = UdpSocket::bind(local).map_err(refused)?;
@@ -64,7 +65,7 @@ pub(super) async fn listen(address: &Address, place: &Place) -> Result<Link, Lin
     link(name, plain, OnceCell::new()).map_err(refused)
 }
 
-pub(super) async fn aim(address: &Address, place: &Place) -> Result<Link, LinkError> {
+pub(super) async fn aim(address: &Address, place: &Endpoint) -> Result<Link, LinkError> {
     let far = resolve_one(address, place).await?;
     let refused = |source| cannot_reach(address, place, source);
     let any = match far {
@@ -85,7 +86,7 @@ fn link(name: SocketAddr, plain: UdpSocket, peer: OnceCell<SocketAddr>) -> io::R
     let socket = tokio::net::UdpSocket::from_std(plain.try_clone()?)?;
     let way = Arc::new(Way { plain, socket, peer });
     let sender = Sender::new(Datagrams(Arc::clone(&way)), Carry::none());
-    let receiver = Receiver(Source::Udp(In(Arc::clone(&way))));
+    let receiver = In(Arc::clone(&way)).into();
     Ok(Link::new(name, Kind::Udp(Udp(way)), sender, Some(receiver)))
 }
 

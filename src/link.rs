@@ -11,6 +11,7 @@
 
 mod address;
 mod baud;
+mod endpoint;
 mod error;
 mod file;
 mod holders;
@@ -22,12 +23,15 @@ mod plug;
 #[cfg(test)]
 mod plug_tests;
 mod ports;
+mod problem;
 mod pty;
 mod receiver;
 mod scheme;
 mod sender;
 mod serial;
+mod spelling;
 mod stdout;
+mod stream;
 mod tcp;
 #[cfg(test)]
 mod tests;
@@ -39,8 +43,9 @@ mod visitors;
 use std::fmt::Display;
 use std::io;
 
-pub use address::{Address, Place};
+pub use address::Address;
 pub use baud::{DEFAULT_BAUD, STANDARD_BAUDS, bytes_per_second};
+pub use endpoint::Endpoint;
 pub use error::LinkError;
 pub use holders::Holder;
 pub use identity::Identity;
@@ -48,8 +53,9 @@ pub use listening::is_pty;
 pub use memory::{Far, memory};
 pub use ports::{Port, ports};
 pub use receiver::Receiver;
-pub use scheme::{SCHEMES, Scheme};
-pub use sender::{MAX_PACKET, Sender, Sent};
+pub use scheme::SCHEMES;
+pub use sender::{MAX_WRITE, Sender, Sent};
+pub use spelling::Scheme;
 
 /// An open link.
 pub struct Link {
