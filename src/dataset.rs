@@ -17,12 +17,15 @@
 //! has such a folder: [`write_runs`].
 
 mod bounds;
+mod conventions;
 mod csv;
 mod error;
 mod figures;
 mod folder;
 mod format;
+mod formats;
 mod kalibr;
+mod listed;
 mod manifest;
 mod mat;
 #[cfg(feature = "mcap")]
@@ -33,6 +36,7 @@ mod parquet;
 pub mod read;
 mod readme;
 mod reference;
+mod run;
 mod runs;
 mod table;
 mod tum;
@@ -40,11 +44,14 @@ mod tum;
 pub use bounds::Bounds;
 pub use error::DatasetError;
 pub use figures::{Figure, Figures, Series};
-pub use folder::{Folder, Holds, Sink};
-pub use format::{FEATURES, FORMATS, Format, Open, Writer, Written};
+pub use folder::{Folder, Sink};
+pub use format::{Format, Open, Writer, Written};
+pub use formats::{FEATURES, FORMATS};
+pub use listed::Holds;
 pub use manifest::FileEntry;
 pub use reference::{Errors, Quality};
-pub use runs::{Made, Run, RunOptions, Shard, write_runs};
+pub use run::Run;
+pub use runs::{Made, RunOptions, Shard, write_runs};
 pub use table::{Column, Table};
 
 use crate::geometry::Attitude;
@@ -121,7 +128,7 @@ pub fn may_write(dir: &Path, force: bool, holds: Holds, names: &[String]) -> Res
 
 /// The files in a folder that would be gone or others' after writing these into it with `force`.
 pub fn replaced(dir: &Path, names: &[String]) -> Vec<PathBuf> {
-    names.iter().cloned().chain(manifest::files_of(dir)).map(|name| dir.join(name)).collect()
+    names.iter().cloned().chain(listed::files_of(dir)).map(|name| dir.join(name)).collect()
 }
 
 /// Writes files that belong together, such as a study's, into `dir`, with a manifest: all of them or none.
@@ -145,7 +152,7 @@ pub fn names(plan: &Plan, formats: &[&'static Format], figures: bool, more: &[&s
     if figures {
         names.extend(tables.iter().chain(&["angles"]).map(|stem| format!("{stem}.svg")));
     }
-    names.extend(["README.md", "scene.toml", folder::MANIFEST, kalibr::NAME].map(String::from));
+    names.extend(["README.md", "scene.toml", listed::MANIFEST, kalibr::NAME].map(String::from));
     names.extend(more.iter().map(|name| name.to_string()));
     names.extend(plan.attached.iter().map(|file| file.name.clone()));
     names
@@ -211,7 +218,7 @@ fn write_in_blocks(
         run: options.run,
         link_faults: options.link_faults,
     };
-    folder.put(folder::MANIFEST, manifest::text(plan, end, &made, &folder)?.as_bytes())?;
+    folder.put(listed::MANIFEST, manifest::text(plan, end, &made, &folder)?.as_bytes())?;
     folder.commit()?;
 
     Ok(Summary { folder: dir.to_path_buf(), files, rows, clipped })

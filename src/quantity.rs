@@ -14,12 +14,15 @@ mod expression;
 mod kind;
 mod matrix;
 mod parse;
+mod ratio;
+mod read;
 mod table;
 mod text;
 mod unit;
 
-pub use exact::{Sign, duration_ns, rate};
-pub use kind::{Kind, Resolution};
+pub use exact::{duration_ns, rate};
+pub use kind::{Kind, Sign};
+pub use read::Resolution;
 pub use text::{text_scalar, text_vector};
 pub use unit::{Base, Dimension};
 

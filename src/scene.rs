@@ -7,11 +7,13 @@
 //! Every mistake of a scene is collected, each as one message with file, line, column, the bad value and what
 //! would be right. The plan carries the scene as resolved: every default, preset and drawn value filled in.
 
+mod attached;
 pub mod builtin;
 mod columns;
 mod declared;
 pub mod document;
 mod draw;
+mod drawn;
 mod faults;
 mod file;
 mod fixed_keys;
@@ -34,10 +36,10 @@ mod sweep;
 mod target;
 mod vehicle;
 
+pub use attached::Attached;
 pub use document::Place;
-pub use draw::Drawn;
+pub use drawn::Drawn;
 pub use faults::OutputFault;
-pub use file::Attached;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS, takes};
 pub use output::{Destination, Output, Overload};
 pub use reference::{AUTO, Reference};

@@ -9,7 +9,7 @@
 //! locked while it is filled, so that of two processes one is refused.
 
 use super::error::DatasetError;
-use super::manifest;
+use super::listed::{self, Holds, MANIFEST, entries};
 use rustix::fs::{FlockOperation, flock};
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -21,32 +21,6 @@ use std::path::{Path, PathBuf};
 const BUFFER: usize = 1 << 18;
 /// Marks a folder that is still being filled, or was when its process was killed.
 pub(super) const INCOMPLETE: &str = ".incomplete";
-/// What lists the files that are ours.
-pub(super) const MANIFEST: &str = "manifest.json";
-
-/// What a folder holds, as its manifest says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Holds {
-    /// A scene played: of `generate` and `run`.
-    Dataset,
-    /// Estimates judged.
-    Score,
-    /// What was studied; a later study adds to it.
-    Study,
-    /// A stream that was listened to.
-    Listen,
-    /// The timing of a stream.
-    Timing,
-    /// Manual pages.
-    Manual,
-}
-
-impl Holds {
-    /// As the manifest spells it.
-    pub const fn name(self) -> &'static str {
-        ["dataset", "score", "study", "listen", "timing", "manual"][self as usize]
-    }
-}
 
 /// A folder while it is being written; dropped before it is complete, it leaves nothing behind.
 pub struct Folder {
@@ -121,7 +95,7 @@ impl Folder {
     /// # Errors
     /// As of [`Folder::commit`].
     pub fn commit_with_manifest(self) -> Result<(), DatasetError> {
-        let text = manifest::of_files(&self.workshop, &self.target, self.holds)?;
+        let text = listed::of_files(&self.workshop, &self.target, self.holds)?;
         self.put(MANIFEST, text.as_bytes())?;
         self.commit()
     }
@@ -150,7 +124,7 @@ impl Folder {
         may_write(&self.target, true, self.holds, &plain)?;
         // What a dataset had before would be taken for this one's.
         let before = match self.holds {
-            Holds::Dataset => manifest::files_of(&self.target),
+            Holds::Dataset => listed::files_of(&self.target),
             _ => Vec::new(),
         };
         for name in [MANIFEST].into_iter().chain(before.iter().map(String::as_str)) {
@@ -260,7 +234,7 @@ pub(super) fn may_write(
     if !force {
         return Err(DatasetError::Exists { path: target.into() });
     }
-    let (there, listed) = (manifest::holds(target), manifest::files_of(target));
+    let (there, listed) = (listed::holds(target), listed::files_of(target));
     if let Some(there) = there.as_deref().filter(|there| *there != holds.name()) {
         let (path, there) = (target.into(), there.to_string());
         return Err(DatasetError::OfAnotherKind { path, there, wanted: holds.name() });
@@ -339,9 +313,4 @@ pub(super) fn is_being_filled(workshop: &Path) -> bool {
 fn is_empty(folder: &Path) -> Result<bool, DatasetError> {
     let names = entries(folder)?;
     Ok(names.iter().all(|name| name.as_encoded_bytes().starts_with(INCOMPLETE.as_bytes())))
-}
-
-pub(super) fn entries(folder: &Path) -> Result<Vec<OsString>, DatasetError> {
-    let list = || fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<Result<_, _>>();
-    list().map_err(DatasetError::io("list", folder))
 }

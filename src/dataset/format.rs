@@ -1,9 +1,8 @@
-//! File formats as a table: each holds the same tables under the same names.
+//! A file format: each holds the same tables under the same names.
 
 use super::error::DatasetError;
 use super::folder::Folder;
 use super::table::{Column, Table};
-use super::{csv, mat, npy, tum};
 use crate::scene::Plan;
 use crate::time::SimTime;
 
@@ -20,28 +19,6 @@ pub struct Format {
 
 /// Begins a dataset of a plan's tables in a folder.
 pub type Open = fn(&Plan, &[Table], &Folder) -> Result<Box<dyn Writer>, DatasetError>;
-
-/// Every format of this build.
-pub static FORMATS: &[&Format] = &[
-    &csv::FORMAT,
-    &npy::FORMAT,
-    &mat::FORMAT,
-    &tum::FORMAT,
-    #[cfg(feature = "parquet")]
-    &super::parquet::FORMAT,
-    #[cfg(feature = "mcap")]
-    &super::mcap::FORMAT,
-];
-
-/// The formats behind a cargo feature of the same name.
-pub const FEATURES: [&str; 2] = ["parquet", "mcap"];
-
-impl Format {
-    /// The format of that name.
-    pub fn from_name(name: &str) -> Option<&'static Format> {
-        FORMATS.iter().copied().find(|format| format.name == name)
-    }
-}
 
 /// A dataset being written in one format.
 pub trait Writer {

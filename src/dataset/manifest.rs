@@ -1,21 +1,20 @@
 //! `manifest.json`: what a program needs to know of a dataset without reading its numbers.
 
+use super::conventions::conventions;
 use super::error::DatasetError;
-use super::folder::{Folder, Holds, MANIFEST, entries};
+use super::folder::Folder;
 use super::format::Written;
-use super::readme;
+use super::listed::{Holds, MANIFEST, OtherEntry, checksum};
 use super::reference::Quality;
-use super::runs::Run;
+use super::run::Run;
 use super::table::Column;
 use crate::scene::{Drawn, Plan};
 use crate::sensor::{Sampling, SensorPlan};
 use crate::time::SimTime;
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A file of numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,12 +80,6 @@ struct SensorEntry {
     clipped: u64,
 }
 
-#[derive(Serialize)]
-struct OtherEntry<'a> {
-    name: &'a str,
-    sha256: String,
-}
-
 /// What was made of a scene.
 pub(super) struct Made<'a> {
     pub files: &'a [FileEntry],
@@ -118,7 +111,7 @@ pub(super) fn text(
         axes: plan.axes.to_string(),
         duration_ns: end.0,
         complete: true,
-        conventions: readme::conventions(plan),
+        conventions: conventions(plan),
         sensors: sensors(plan, files, clipped),
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
@@ -129,7 +122,7 @@ pub(super) fn text(
         other_files: others.iter().map(other).collect::<Result<_, DatasetError>>()?,
     };
     let text = serde_json::to_string_pretty(&manifest).map_err(io::Error::other);
-    Ok(text.map_err(DatasetError::io("write", Path::new("manifest.json")))? + "\n")
+    Ok(text.map_err(DatasetError::io("write", Path::new(MANIFEST)))? + "\n")
 }
 
 /// Whether a file holds a sensor's samples.
@@ -159,77 +152,4 @@ pub(super) fn sampling_name(sampling: Sampling) -> &'static str {
         Sampling::Point => "point",
         Sampling::Average => "average",
     }
-}
-
-/// SHA-256 of a file as it stands on the disk.
-pub(super) fn checksum(path: &Path) -> Result<String, DatasetError> {
-    let digest = || {
-        let mut hasher = Sha256::new();
-        let mut file = io::BufReader::with_capacity(1 << 18, File::open(path)?);
-        loop {
-            let chunk = io::BufRead::fill_buf(&mut file)?;
-            if chunk.is_empty() {
-                return Ok(hasher.finalize());
-            }
-            hasher.update(chunk);
-            let read = chunk.len();
-            io::BufRead::consume(&mut file, read);
-        }
-    };
-    let digest = digest().map_err(DatasetError::io("read back", path))?;
-    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
-}
-
-#[derive(Serialize)]
-struct Plain<'a> {
-    program: &'static str,
-    version: &'static str,
-    holds: &'static str,
-    other_files: Vec<OtherEntry<'a>>,
-}
-
-/// The manifest of a folder without a scene: of the files in `workshop`, and of those that the manifest in `target`
-/// lists and that stay there.
-pub(super) fn of_files(workshop: &Path, target: &Path, holds: Holds) -> Result<String, DatasetError> {
-    let mut files: BTreeMap<String, PathBuf> = BTreeMap::new();
-    let there = files_of(target).into_iter().map(|name| (name.clone(), target.join(name)));
-    files.extend(there.filter(|(_, path)| path.is_file()));
-    for name in entries(workshop)? {
-        files.insert(name.to_string_lossy().into_owned(), workshop.join(name));
-    }
-    let entry = |(name, path): (&'_ String, &PathBuf)| Ok((name.clone(), checksum(path)?));
-    let sums: Vec<_> = files.iter().map(entry).collect::<Result<_, DatasetError>>()?;
-    let other_files = sums.iter().map(|(name, sha256)| OtherEntry { name, sha256: sha256.clone() }).collect();
-    let manifest = Plain {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
-        holds: holds.name(),
-        other_files,
-    };
-    let text = serde_json::to_string_pretty(&manifest).map_err(io::Error::other);
-    Ok(text.map_err(DatasetError::io("write", Path::new(MANIFEST)))? + "\n")
-}
-
-/// What the manifest of a folder of ours says it holds; nothing without a manifest of ours.
-pub(super) fn holds(folder: &Path) -> Option<String> {
-    let json = read_json(folder).filter(is_ours)?;
-    // Manifests of version 0.1.0 may lack it, and are all of datasets.
-    Some(json.get("holds").and_then(|name| name.as_str()).unwrap_or(Holds::Dataset.name()).to_string())
-}
-
-fn is_ours(json: &serde_json::Value) -> bool {
-    json.get("program").and_then(|name| name.as_str()) == Some(env!("CARGO_PKG_NAME"))
-}
-
-/// The files that the manifest of a folder of ours lists: plain names in its own folder; none without one.
-pub(super) fn files_of(folder: &Path) -> Vec<String> {
-    let json = read_json(folder).filter(is_ours).unwrap_or_default();
-    let listed = ["files", "other_files"].into_iter().filter_map(|key| json.get(key)?.as_array());
-    let names = listed.flatten().filter_map(|file| file.get("name")?.as_str());
-    names.filter(|name| Path::new(name).file_name() == Some(name.as_ref())).map(String::from).collect()
-}
-
-/// The manifest in a folder, if there is one and it is JSON.
-pub(super) fn read_json(folder: &Path) -> Option<serde_json::Value> {
-    serde_json::from_str(&std::fs::read_to_string(folder.join(MANIFEST)).ok()?).ok()
 }

@@ -7,10 +7,11 @@ mod npy;
 mod other;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod rows;
 mod tum;
 
 use super::error::DatasetError;
-use super::manifest;
+use super::listed;
 use crate::geometry::{Attitude, Axes, Body, Vector};
 use crate::sensor::SensorKind;
 use crate::table::{Clock, Next, TICKS, Table, TableError, TimeColumn, TimeUnit, Wanted};
@@ -114,7 +115,7 @@ fn axes(file: &Path) -> Result<Axes, DatasetError> {
     };
     let manifest = folder.join("manifest.json");
     std::fs::metadata(&manifest).map_err(DatasetError::io("tell the axes of the dataset from", &manifest))?;
-    let json = manifest::read_json(folder).unwrap_or_default();
+    let json = listed::read_json(folder).unwrap_or_default();
     json.get("axes").and_then(|axes| Axes::from_name(axes.as_str()?)).ok_or_else(|| DatasetError::Content {
         place: manifest.display().to_string(),
         problem: format!("names no axes: `axes` should be {}", Axes::NAMES.join(" or ")),

@@ -5,12 +5,12 @@
 //! there already and came of the same scene is kept: making the same runs again makes what an interruption left out.
 
 use super::error::DatasetError;
-use super::folder::entries;
 use super::format::Format;
-use super::{Draw, Options, folder, manifest, reference, write};
+use super::listed::{self, entries};
+use super::run::Run;
+use super::{Draw, Options, folder, reference, write};
 use crate::parallel;
-use crate::scene::{Plan, Runs, SweptValue};
-use serde::Serialize;
+use crate::scene::{Plan, Runs};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
@@ -59,15 +59,6 @@ impl FromStr for Shard {
             )),
         }
     }
-}
-
-/// What makes one run differ from the others, as its manifest says it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Run {
-    /// From 0.
-    pub index: u64,
-    /// The values of the keys that the scene sweeps.
-    pub swept: Vec<SweptValue>,
 }
 
 /// How runs are made.
@@ -205,7 +196,7 @@ fn write_run(scene: &Runs, index: u64, dir: &Path, options: &RunOptions<'_>) -> 
 
 /// Whether the dataset that is there is complete and what this run would give.
 fn is_same(plan: &Plan, run: &Run, folder: &Path, options: &RunOptions<'_>) -> Result<bool, DatasetError> {
-    let Some(manifest) = manifest::read_json(folder) else { return Ok(false) };
+    let Some(manifest) = listed::read_json(folder) else { return Ok(false) };
     let settled = reference::settled(plan, plan.duration)?;
     let scene = plan.resolved_until(plan.duration, settled.as_ref().map(|settled| &settled.reference));
     let has = |format: &&'static Format| {
@@ -232,7 +223,7 @@ fn tabulate(scene: &Runs, dir: &Path, options: &RunOptions<'_>) -> Result<(), Da
         let header = header.chain(["samples", "clipped", "reference_rms_deg"]);
         table.write_record(header).map_err(|error| failed(error.into()))?;
         for &index in &indices {
-            let read = || row(index, &manifest::read_json(&folder_of(dir, index)).unwrap_or_default(), &keys);
+            let read = || row(index, &listed::read_json(&folder_of(dir, index)).unwrap_or_default(), &keys);
             table
                 .write_record(rows.entry(index).or_insert_with(read))
                 .map_err(|error| failed(error.into()))?;

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use super::address::Address;
 use super::problem::{self, Problem};
-use super::spelling::Scheme;
 use super::sender::{Carry, Out, Sender};
+use super::spelling::Scheme;
 use super::{Kind, Link, LinkError};
 
 /// Its line in the table of links.

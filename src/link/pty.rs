@@ -19,10 +19,10 @@ use rustix::pty::{OpenptFlags, grantpt, ioctl_tiocgptpeer, openpt, ptsname, unlo
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use super::address::Address;
-use super::problem::Problem;
 use super::baud;
-use super::spelling::Scheme;
+use super::problem::Problem;
 use super::sender::{Carry, Sender};
+use super::spelling::Scheme;
 use super::tty::Terminal;
 use super::uart::Uart;
 use super::visitors::Visitors;

@@ -16,14 +16,14 @@ use tokio::sync::Mutex;
 use tokio_serial::{ClearBuffer, ErrorKind, SerialPort, SerialPortBuilderExt, SerialStream};
 
 use super::address::Address;
-use super::problem::Problem;
 use super::baud;
 use super::holders::holders;
 use super::plug::{Plug, Plugged};
 use super::ports::ports;
-use super::stream::read;
-use super::spelling::Scheme;
+use super::problem::Problem;
 use super::sender::{Carry, Sender};
+use super::spelling::Scheme;
+use super::stream::read;
 use super::{Kind, Link, LinkError};
 use crate::os;
 

@@ -12,8 +12,8 @@ use rustix::fs::{FileType, fstat};
 
 use super::address::Address;
 use super::problem::Problem;
-use super::spelling::Scheme;
 use super::sender::{Carry, Out, Sender};
+use super::spelling::Scheme;
 use super::{Kind, Link, LinkError};
 
 /// Its line in the table of links.

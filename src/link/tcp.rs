@@ -12,11 +12,11 @@ use tokio::sync::{Mutex, OnceCell};
 
 use super::address::Address;
 use super::endpoint::{self, Endpoint};
-use super::problem::Problem;
 use super::net::{cannot_listen, cannot_reach, resolve, resolve_one};
-use super::stream::read;
-use super::spelling::Scheme;
+use super::problem::Problem;
 use super::sender::{Carry, Out, Sender};
+use super::spelling::Scheme;
+use super::stream::read;
 use super::{Kind, Link, LinkError};
 use crate::os;
 

@@ -12,10 +12,10 @@ use tokio::sync::OnceCell;
 
 use super::address::Address;
 use super::endpoint::{self, Endpoint};
-use super::problem::Problem;
 use super::net::{cannot_listen, cannot_reach, resolve_one};
-use super::spelling::Scheme;
+use super::problem::Problem;
 use super::sender::{Carry, Out, Sender};
+use super::spelling::Scheme;
 use super::{Kind, Link, LinkError};
 
 /// The listening line in the table of links.

@@ -1,7 +1,7 @@
 //! The grammar: a number, fraction or vector, then a unit expression (see `expression.rs`).
 
-use super::exact::Ratio;
 use super::kind::Kind;
+use super::ratio::{Ratio, whole};
 use super::unit::Scale;
 use super::{Quantity, QuantityError, Values};
 use crate::double::Double;
@@ -80,8 +80,8 @@ impl Number {
             _ if self.value.hi == 0.0 => self.value,
             Some((1, 1)) => self.value,
             Some((top, bottom)) => {
-                let top = self.value * super::exact::whole(top);
-                if bottom == 1 { top } else { top / super::exact::whole(bottom) }
+                let top = self.value * whole(top);
+                if bottom == 1 { top } else { top / whole(bottom) }
             }
             None => self.value * scale.factor,
         }

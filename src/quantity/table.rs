@@ -1,8 +1,7 @@
 //! The kinds of quantity that scenes have: name, dimension, example, units to offer, signs.
 
-use super::exact::Sign;
-use super::kind::Kind;
-use super::unit::{Base, Dimension};
+use super::kind::{Kind, Sign};
+use super::unit::{BITS, Base, Dimension};
 
 const ANGLE: Dimension = Dimension::NONE.with(Base::Angle, 2);
 const ANGULAR_RATE: Dimension = ANGLE.with(Base::Time, -2);
@@ -15,7 +14,6 @@ const GYRO_DENSITY: Dimension = ANGLE.with(Base::Time, -1);
 const ACCEL_DENSITY: Dimension = LENGTH.with(Base::Time, -3);
 const MAG_DENSITY: Dimension = FIELD.with(Base::Time, 1);
 /// The dimension of a resolution in bits.
-pub(super) const BITS: Dimension = Dimension::NONE.with(Base::Bit, 2);
 
 const PRESSURE: Dimension = Dimension::NONE.with(Base::Mass, 2).with(Base::Length, -2).with(Base::Time, -4);
 

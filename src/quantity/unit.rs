@@ -1,6 +1,6 @@
 //! Units and the dimensions they measure.
 
-use super::exact::Ratio;
+use super::ratio::Ratio;
 use crate::double::Double;
 use std::fmt;
 
@@ -194,6 +194,8 @@ const FIELD: Dimension = Dimension::NONE.with(Base::Field, 2);
 const TEMPERATURE: Dimension = Dimension::NONE.with(Base::Temperature, 2);
 const COUNT: Dimension = Dimension::NONE.with(Base::Count, 2);
 const BIT: Dimension = Dimension::NONE.with(Base::Bit, 2);
+/// Of a converter.
+pub(super) const BITS: Dimension = Dimension::NONE.with(Base::Bit, 2);
 const PRESSURE: Dimension = Dimension::NONE.with(Base::Mass, 2).with(Base::Length, -2).with(Base::Time, -4);
 
 const fn unit(

@@ -1,8 +1,8 @@
 //! What reading a whole scene collects: its mistakes, and what is found on the way.
 
+use super::attached::Attached;
 use super::document::{Mistake, Place};
-use super::draw::Drawn;
-use super::file::Attached;
+use super::drawn::Drawn;
 use crate::geometry::Axes;
 use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};

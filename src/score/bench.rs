@@ -3,8 +3,7 @@
 use super::align::Frames;
 use super::delay::{self, Fit};
 use super::figures::{Errors, Tally};
-use super::judge::{Options, Row, Truth};
-use super::place::Clock;
+use super::given::{Clock, Options, Row, Truth};
 use super::sampled::Sampled;
 use super::series::Series;
 use super::{Align, AttitudeError};

@@ -2,25 +2,11 @@
 
 use super::bench::{Bench, DELAYS, STEP};
 use super::delay::{self, Fit};
+use super::given::Clock;
 use super::looks::{BAD, SHARE};
 use super::offset::{self, Doubt, Found, Match};
 use super::series::Series;
 use crate::time::SimTime;
-
-/// What clock the times of estimates are of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Clock {
-    /// The truth's: an estimate is late by its delay, from half a second early to two seconds late.
-    #[default]
-    Truth,
-    /// The truth's, exactly: each time is that of the newest sample an estimate rests on.
-    Sample,
-    /// One of which nothing is known, such as a log's since some boot. [`Options::until`](super::Options) has to be
-    /// finite.
-    Other,
-    /// The one of the two that the motion, or the times themselves, leave no doubt about.
-    Auto,
-}
 
 /// A delay up to which an estimate is taken to be on the truth's clock whatever its times, ns.
 const PLAIN: std::ops::Range<i64> = -100_000_000..500_000_000;

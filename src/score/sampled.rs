@@ -1,6 +1,6 @@
 //! The truth on an even grid: for a search that looks at it a million times.
 
-use super::judge::Truth;
+use super::given::Truth;
 use crate::geometry::log;
 use crate::time::SimTime;
 use glam::DQuat;

@@ -1,7 +1,7 @@
 //! Which estimates count, each with a time on one clock.
 
 use super::clock;
-use super::judge::{Stamp, Timed};
+use super::given::{Stamp, Timed};
 use super::series::Series;
 use crate::geometry::Attitude;
 use crate::time::SimTime;

@@ -1,7 +1,7 @@
 //! MATLAB's level 4 file back: a column vector of doubles for each column.
 
 use super::super::DatasetError;
-use super::other::{Rows, What, open, places, refuse};
+use super::rows::{Rows, What, open, places, refuse};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! MCAP back: attitudes and readings out of the ROS 2 messages that hold them.
 
 use super::super::DatasetError;
-use super::other::{Rows, What, open, refuse};
+use super::rows::{Rows, What, open, refuse};
 use crate::sensor::SensorKind;
 use ::mcap::records::Record;
 use ::mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader};

@@ -1,7 +1,7 @@
 //! NumPy's own file back: the structured arrays that the dataset writes.
 
 use super::super::DatasetError;
-use super::other::{Rows, What, open, places, refuse};
+use super::rows::{Rows, What, open, places, refuse};
 use std::io::Read;
 use std::path::Path;
 

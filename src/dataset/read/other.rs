@@ -1,11 +1,12 @@
 //! The tables of a dataset that was written without CSV: which file has them, and the checks that all formats share.
 
 use super::super::DatasetError;
-use super::super::manifest;
+use super::super::listed;
 #[cfg(feature = "mcap")]
 use super::mcap;
 #[cfg(feature = "parquet")]
 use super::parquet;
+use super::rows::{Rows, What};
 use super::{Recorded, axes};
 use super::{mat, npy, tum};
 use crate::geometry::{Body, Vector};
@@ -14,38 +15,8 @@ use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 use std::path::{Path, PathBuf};
 
-/// Columns of a table: `t_ns`, and those that were asked for.
-#[derive(Debug, Default)]
-pub(super) struct Rows {
-    pub times: Vec<i64>,
-    pub columns: Vec<Vec<f64>>,
-}
-
 /// Time and value of each reading.
 type Readings = Vec<(SimTime, Vector<Body>)>;
-
-/// Which table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum What {
-    Truth,
-    Sensor(SensorKind),
-}
-
-impl What {
-    fn name(self) -> &'static str {
-        match self {
-            What::Truth => "truth",
-            What::Sensor(kind) => kind.name(),
-        }
-    }
-
-    fn columns(self) -> Vec<String> {
-        match self {
-            What::Truth => ["qw", "qx", "qy", "qz"].map(String::from).into(),
-            What::Sensor(kind) => ["x", "y", "z"].map(|axis| format!("{axis}_{}", kind.column_unit())).into(),
-        }
-    }
-}
 
 /// How a format is read: of its file, the table and the columns of these names.
 type Read = fn(&Path, What, &[&str]) -> Result<Rows, DatasetError>;
@@ -68,7 +39,7 @@ const FORMATS: [(&str, Option<&str>, Option<Read>); 5] = [
 
 /// Whether the manifest of a folder says that it holds a sensor's readings.
 pub(super) fn lists(folder: &Path, kind: SensorKind) -> bool {
-    let json = manifest::read_json(folder).unwrap_or_default();
+    let json = listed::read_json(folder).unwrap_or_default();
     let sensors = json.get("sensors").and_then(|sensors| sensors.as_array());
     sensors.into_iter().flatten().any(|sensor| sensor.get("name").is_some_and(|name| *name == kind.name()))
 }
@@ -152,24 +123,4 @@ fn check(file: &Path, rows: &Rows, names: &[&str]) -> Result<(), DatasetError> {
 /// A mistake in a row, the first of which is row 1.
 fn wrong(file: &Path, row: usize, column: &str, problem: String) -> DatasetError {
     DatasetError::Content { place: format!("{}, row {}, column {column}", file.display(), row + 1), problem }
-}
-
-/// A mistake of the whole file.
-pub(super) fn refuse(file: &Path, problem: impl ToString) -> DatasetError {
-    DatasetError::Content { place: file.display().to_string(), problem: problem.to_string() }
-}
-
-/// The places of the columns asked for among those that a file has.
-pub(super) fn places(file: &Path, has: &[String], names: &[&str]) -> Result<Vec<usize>, DatasetError> {
-    let find = |name: &&str| has.iter().position(|column| column == name);
-    let missing =
-        |name: &str| refuse(file, format!("has no column `{name}`; its columns are {}", has.join(", ")));
-    names.iter().map(|name| find(name).ok_or_else(|| missing(name))).collect()
-}
-
-/// Opens a file; how many bytes it has.
-pub(super) fn open(file: &Path) -> Result<(std::io::BufReader<std::fs::File>, u64), DatasetError> {
-    let opened = std::fs::File::open(file).map_err(DatasetError::io("read", file))?;
-    let len = opened.metadata().map_err(DatasetError::io("read", file))?.len();
-    Ok((std::io::BufReader::with_capacity(1 << 18, opened), len))
 }

@@ -1,7 +1,7 @@
 //! Apache Parquet back: the columns asked for, row group by row group.
 
 use super::super::DatasetError;
-use super::other::{Rows, What, places, refuse};
+use super::rows::{Rows, What, places, refuse};
 use ::parquet::column::reader::ColumnReader;
 use ::parquet::errors::ParquetError;
 use ::parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};

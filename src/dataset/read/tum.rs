@@ -1,7 +1,7 @@
 //! TUM trajectories back: attitudes alone, times in seconds.
 
 use super::super::DatasetError;
-use super::other::{Rows, What, open, refuse};
+use super::rows::{Rows, What, open, refuse};
 use std::io::BufRead;
 use std::path::Path;
 
