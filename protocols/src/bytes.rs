@@ -100,3 +100,45 @@ fn element<T: Scalar>(at: &Range<usize>, i: usize) -> Range<usize> {
     let start = at.start + i * T::SIZE;
     start..start + T::SIZE
 }
+
+/// A field of a payload: a number, or numbers one after the other.
+pub(crate) trait Field: Sized {
+    /// Reads it at a place, least significant bytes first.
+    fn from_le(bytes: &[u8], at: usize) -> Self;
+    /// Reads it at a place, most significant bytes first.
+    fn from_be(bytes: &[u8], at: usize) -> Self;
+    /// Writes it at a place, least significant bytes first.
+    fn to_le(self, bytes: &mut [u8], at: usize);
+    /// Writes it at a place, most significant bytes first.
+    fn to_be(self, bytes: &mut [u8], at: usize);
+}
+
+impl<T: Scalar> Field for T {
+    fn from_le(bytes: &[u8], at: usize) -> Self {
+        le(bytes, at..at + T::SIZE)
+    }
+    fn from_be(bytes: &[u8], at: usize) -> Self {
+        be(bytes, at..at + T::SIZE)
+    }
+    fn to_le(self, bytes: &mut [u8], at: usize) {
+        put_le(bytes, at..at + T::SIZE, self);
+    }
+    fn to_be(self, bytes: &mut [u8], at: usize) {
+        put_be(bytes, at..at + T::SIZE, self);
+    }
+}
+
+impl<T: Scalar, const N: usize> Field for [T; N] {
+    fn from_le(bytes: &[u8], at: usize) -> Self {
+        les(bytes, at..at + N * T::SIZE)
+    }
+    fn from_be(bytes: &[u8], at: usize) -> Self {
+        bes(bytes, at..at + N * T::SIZE)
+    }
+    fn to_le(self, bytes: &mut [u8], at: usize) {
+        put_les(bytes, at..at + N * T::SIZE, self);
+    }
+    fn to_be(self, bytes: &mut [u8], at: usize) {
+        put_bes(bytes, at..at + N * T::SIZE, self);
+    }
+}

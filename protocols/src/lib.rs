@@ -11,6 +11,9 @@
 //! link are not put back in order, and MAVLink signatures are not checked.
 #![no_std]
 
+#[macro_use]
+mod message;
+
 mod bytes;
 pub mod cobs;
 mod error;

@@ -2,71 +2,17 @@
 //!
 //! Registers 0x43 to 0x48 exactly as they lie in the chip: big-endian two's complement, chip axes.
 
-use core::ops::Range;
-
-use crate::bytes;
-use crate::error::Error;
-
 /// The packet type on the wire.
 pub const TYPE: u8 = 0x03;
 
-/// Bytes of payload.
-pub const LEN: usize = 6;
-
-mod field {
-    use super::Range;
-
-    pub(super) const GYRO: Range<usize> = 0..6;
-}
-
-/// A view of the payload's bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Payload<T>(T);
-
-impl<T: AsRef<[u8]>> Payload<T> {
-    /// Takes `bytes` as the payload of a `gyro` packet.
-    ///
-    /// # Errors
-    /// [`Error::Length`] unless there are exactly [`LEN`] bytes.
-    pub fn new_checked(bytes: T) -> Result<Self, Error> {
-        Error::check_length(LEN, bytes.as_ref().len())?;
-        Ok(Self(bytes))
-    }
-
-    /// Raw counts about the chip's x, y and z: angular rate.
-    pub fn gyro(&self) -> [i16; 3] {
-        bytes::bes(self.0.as_ref(), field::GYRO)
-    }
-}
-
-impl<T: AsRef<[u8]> + AsMut<[u8]>> Payload<T> {
-    /// Sets [`gyro`](Self::gyro).
-    pub fn set_gyro(&mut self, value: [i16; 3]) {
-        bytes::put_bes(self.0.as_mut(), field::GYRO, value);
-    }
-}
-
-/// The payload of a `gyro` packet as plain values.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Repr {
-    /// Raw counts about the chip's x, y and z: angular rate.
-    pub gyro: [i16; 3],
-}
-
-impl Repr {
-    /// Reads every field of a view.
-    pub fn parse<T: AsRef<[u8]>>(payload: &Payload<T>) -> Self {
-        Self { gyro: payload.gyro() }
-    }
-
-    /// Bytes that [`emit`](Self::emit) writes.
-    pub const fn buffer_len(&self) -> usize {
-        LEN
-    }
-
-    /// Writes every field into a view.
-    pub fn emit<T: AsRef<[u8]> + AsMut<[u8]>>(&self, payload: &mut Payload<T>) {
-        payload.set_gyro(self.gyro);
+payload! {
+    big, exactly, "the payload of a `gyro` packet";
+    /// Bytes of payload.
+    LEN;
+    #[derive(Eq)]
+    fields {
+        /// Raw counts about the chip's x, y and z: angular rate.
+        gyro / set_gyro: [i16; 3],
     }
 }
 
@@ -80,31 +26,5 @@ mod tests {
         Repr { gyro: [1, -2, -32768] }
     }
 
-    #[test]
-    fn deconstruct() {
-        let payload = Payload::new_checked(&GOLDEN).unwrap();
-        assert_eq!(payload.gyro(), [1, -2, -32768]);
-        assert!(Payload::new_checked(&GOLDEN[1..]).is_err());
-    }
-
-    #[test]
-    fn construct() {
-        let mut bytes = [0xff; LEN];
-        let mut payload = Payload::new_checked(&mut bytes).unwrap();
-        payload.set_gyro([1, -2, -32768]);
-        assert_eq!(bytes, GOLDEN);
-    }
-
-    #[test]
-    fn parse() {
-        assert_eq!(Repr::parse(&Payload::new_checked(&GOLDEN).unwrap()), repr());
-    }
-
-    #[test]
-    fn emit() {
-        let mut bytes = [0xff; LEN];
-        assert_eq!(repr().buffer_len(), LEN);
-        repr().emit(&mut Payload::new_checked(&mut bytes).unwrap());
-        assert_eq!(bytes, GOLDEN);
-    }
+    golden_tests!(GOLDEN, repr());
 }
