@@ -2,6 +2,19 @@
 //!
 //! Each run of up to 254 non-zero bytes is preceded by its length plus one; the zeros between
 //! runs are left out. A receiver that was cut off finds its place again at the next zero.
+//!
+//! ```
+//! use ratetable_protocols::cobs;
+//!
+//! let mut stuffed = [0; cobs::max_encoded_len(3)];
+//! let len = cobs::encode(&[1, 0, 2], &mut stuffed)?;
+//! assert_eq!(stuffed[..len], [2, 1, 2, 2]);
+//!
+//! let mut back = [0; 3];
+//! assert_eq!(cobs::decode(&stuffed[..len], &mut back)?, 3);
+//! assert_eq!(back, [1, 0, 2]);
+//! # Ok::<(), ratetable_protocols::Error>(())
+//! ```
 
 use crate::error::Error;
 

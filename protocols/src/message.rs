@@ -71,6 +71,16 @@ macro_rules! payload {
         }
 
         #[doc = concat!("Plain values of ", $($what),+, ".")]
+        ///
+        /// ```
+        #[doc = concat!("use ", module_path!(), "::{LEN, Payload, Repr};")]
+        ///
+        /// let repr = Repr::default();
+        /// let mut bytes = [0xff; LEN];
+        /// repr.emit(&mut Payload::new_checked(&mut bytes)?);
+        /// assert_eq!(Repr::parse(&Payload::new_checked(&bytes)?), repr);
+        /// # Ok::<(), ratetable_protocols::Error>(())
+        /// ```
         #[derive(Debug, Clone, Copy, PartialEq, Default)]
         $(#[$attribute])*
         pub struct Repr {

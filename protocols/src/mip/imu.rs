@@ -3,6 +3,17 @@
 //! Axes are forward, right, down. Fields that are not known here are stepped over. Of several that tell the time the
 //! one is read that a unit's clock steps least in: its own nanoseconds, then those of an outer clock. The ticks of field 0E are
 //! stepped over: no packet says how long one is.
+//!
+//! ```
+//! use ratetable_protocols::mip::imu::{Payload, Repr};
+//!
+//! let repr = Repr { accel: Some([0.0, 0.0, -1.0]), ..Default::default() };
+//! let mut bytes = [0; 14];
+//! assert_eq!(repr.buffer_len(), bytes.len());
+//! repr.emit(&mut bytes);
+//! assert_eq!(Repr::parse(&Payload::new_checked(&bytes)?), repr);
+//! # Ok::<(), ratetable_protocols::Error>(())
+//! ```
 
 use core::ops::Range;
 

@@ -2,6 +2,14 @@
 //!
 //! Sources: the register maps of the MPU-6000/6050 (RM-MPU-6000A), the MPU-9250 (RM-MPU-9250A)
 //! and the AK8963 (MS1356-E).
+//!
+//! ```
+//! use ratetable_protocols::mpu::registers;
+//!
+//! let widest = registers::full_scale_bits(3);
+//! assert_eq!(registers::gyro_full_scale_dps(widest), 2000.0);
+//! assert_eq!(registers::accel_full_scale_g(widest), 16.0);
+//! ```
 
 /// `WHO_AM_I` of an MPU-6000 and an MPU-6050.
 pub const WHO_MPU60X0: u8 = 0x68;

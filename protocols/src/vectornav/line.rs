@@ -1,6 +1,18 @@
 //! Commands and their answers: `$text*XX` and CR LF.
 //!
 //! Text is printable ASCII without `$` and `*`; XX is the exclusive or of its bytes, in hexadecimal.
+//!
+//! ```
+//! use ratetable_protocols::vectornav::line::Line;
+//!
+//! let line = Line::new("VNRRG,01")?;
+//! assert!(line.terms().eq(["VNRRG", "01"]));
+//! let mut bytes = [0; 14];
+//! assert_eq!(line.buffer_len(), bytes.len());
+//! line.emit(&mut bytes);
+//! assert_eq!(&bytes, b"$VNRRG,01*72\r\n");
+//! # Ok::<(), ratetable_protocols::Error>(())
+//! ```
 
 use crate::bytes;
 use crate::error::Error;
