@@ -28,7 +28,6 @@ macro_rules! payload {
         pub const LEN: usize = size_of::<Wire>();
 
         /// The fields as they lie on the wire, for their places alone.
-        #[allow(dead_code, reason = "only the places of its fields are asked for")]
         #[repr(C, packed)]
         struct Wire {
             $($name: $kind,)+
