@@ -148,7 +148,7 @@ fn unreadable() {
     let broken = std::env::args_os().enumerate().skip(1).filter(|(_, argument)| argument.to_str().is_none());
     for (i, argument) in broken {
         tell(&format!(
-            "argument {i}, {argument:?}, is no UTF-8: scenes, keys and links are named in UTF-8, and only the folder of --out may be called otherwise; rename the file, or set the terminal to UTF-8"
+            "argument {i}, {argument:?}, is not UTF-8: scenes, keys and links need UTF-8 names, and only the --out folder may have another; rename the file, or set the terminal to UTF-8"
         ));
     }
 }

@@ -103,7 +103,7 @@ fn warnings(plan: &Plan) -> Vec<String> {
             && lsb(&sensor.values, sensor.kind).is_none()
         {
             warnings.push(format!(
-                "{} has neither noise nor resolution: while the vehicle is still its readings repeat, and a flight controller takes such a sensor for dead (PX4: 100 equal values in a row)",
+                "{} has neither noise nor resolution: while the vehicle is still its readings repeat, and a flight controller treats such a sensor as dead (PX4: 100 equal values in a row)",
                 sensor.kind
             ));
         }

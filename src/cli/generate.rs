@@ -45,20 +45,20 @@ pub struct Arguments {
 }
 
 fn formats_help() -> String {
-    format!("In which formats, separated by commas: {}", list::formats::named())
+    format!("Formats, separated by commas: {}", list::formats::named())
 }
 
 fn format(name: &str) -> Result<&'static Format, String> {
     Format::from_name(name).ok_or_else(|| {
         if FEATURES.contains(&name) {
             return format!(
-                "`{name}` is not in this build: it brings heavy crates, so build with `--features {name}`"
+                "`{name}` is not in this build: it needs large dependencies; build with `--features {name}`"
             );
         }
         let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
         let near =
             nearest(name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
-        format!("`{name}` is no format of this version ({}){near}", names.join(", "))
+        format!("`{name}` is not a format of this version ({}){near}", names.join(", "))
     })
 }
 
@@ -102,7 +102,7 @@ fn several(arguments: &Arguments) -> Result<Option<Runs>, Refusal> {
     let runs = Runs::load(&arguments.scene, &arguments.set)?;
     let asked = arguments.runs.is_some() || arguments.shard.is_some() || runs.keys().next().is_some();
     if asked && arguments.runs.is_none() && runs.combinations() == 1 {
-        return Err(Refusal("how many runs? say so, such as --runs 100".into()));
+        return Err(Refusal("say how many runs, such as --runs 100".into()));
     }
     Ok(asked.then_some(runs))
 }
@@ -113,7 +113,7 @@ fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal
     let mine = shard.count(runs);
     if mine > MOST_RUNS {
         return Err(Refusal(format!(
-            "--runs {runs} makes {mine} folders here, and {MOST_RUNS} is the most: make a share of them, such as --shard 1/{}, or write fewer",
+            "--runs {runs} makes {mine} folders here, above the limit of {MOST_RUNS}: make a share of them, such as --shard 1/{}, or fewer",
             runs.div_ceil(MOST_RUNS)
         )));
     }
@@ -136,8 +136,8 @@ fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal
     let Made { written, kept } = made?;
     let there = match kept {
         0 => String::new(),
-        1 => ", 1 was there already".to_string(),
-        kept => format!(", {kept} were there already"),
+        1 => ", 1 already existed".to_string(),
+        kept => format!(", {kept} already existed"),
     };
     let seconds = started.elapsed().as_secs_f64();
     tell(&format!(

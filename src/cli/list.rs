@@ -161,7 +161,7 @@ fn one(what: What, name: &str) -> Result<String, Refusal> {
         n if n > MOST_NAMES => format!("`ratetable list {}` shows them", name_of(what)),
         _ => format!("there are {}", firsts.join(", ")),
     };
-    Err(Refusal(format!("`{name}` is none of the {}: {there}{near}", name_of(what))))
+    Err(Refusal(format!("`{name}` is not one of the {}: {there}{near}", name_of(what))))
 }
 
 /// So many names are told in a message at the most.
@@ -243,7 +243,7 @@ fn ports() -> List {
     let mut list = List::of_rows(&["port", "product", "manufacturer", "try"], rows.collect());
     if list.items.is_empty() {
         list.below =
-            "no serial port was found; a pty needs none: ratetable run SCENE --to mpu@pty\n".to_string();
+            "no serial port found; a pty needs no hardware: ratetable run SCENE --to mpu@pty\n".to_string();
     }
     list
 }

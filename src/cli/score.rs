@@ -157,7 +157,7 @@ fn one(
         }
         Err(Unjudged::NoTruth) => {
             return Err(Refusal(format!(
-                "{}: none of its {count} attitudes is at a time at which the truth is known ({} to {}{})",
+                "{}: none of its {count} attitudes is at a time that the truth covers ({} to {}{})",
                 scored.source,
                 truth.track.first(),
                 truth.track.last(),

@@ -112,7 +112,7 @@ fn cases(plan: Option<&Plan>, quick: bool) -> Result<Vec<Case<'_>>, Refusal> {
         let name = plan.name.clone();
         if cases.iter().any(|case| case.name == name) {
             return Err(Refusal(format!(
-                "the scene is called `{name}`, as one of the built-in motions is: give it another `name`"
+                "the scene's name `{name}` is also a built-in motion's: give it another `name`"
             )));
         }
         let rates = if quick { motions::QUICK_RATES.to_vec() } else { motions::RATES.to_vec() };
@@ -147,11 +147,9 @@ fn asked(arguments: &Arguments) -> Result<(What, Option<&str>), Refusal> {
     Err(Refusal(match second {
         None => format!("`{word}` is neither a study ({names}) nor a scene, built in or a file{near}"),
         Some(scene) if is_scene => {
-            format!(
-                "`{word}` is a scene, and so `{scene}` is one too many: write a study ({names}), then one scene"
-            )
+            format!("`{word}` is a second scene after `{scene}`: write a study ({names}), then one scene")
         }
-        Some(_) => format!("`{word}` is no study ({names}){near}"),
+        Some(_) => format!("`{word}` is not a study ({names}){near}"),
     }))
 }
 

@@ -55,7 +55,7 @@ impl FromStr for Shard {
         match parts {
             Some((index, of)) if of > 0 && index <= of => Ok(Shard { index: index % of, of }),
             _ => Err(format!(
-                "`{text}` is no share: write I/N with I from 0 to N-1, or from 1 to N, such as 3/8"
+                "`{text}` is not a share: write I/N with I from 0 to N-1, or from 1 to N, such as 3/8"
             )),
         }
     }

@@ -166,7 +166,7 @@ fn of_place(
     if is_modelled(Some(there), used) {
         return Found::modelled(survey.largest_of_nav(there - default), "largest").by("earth.latitude");
     }
-    let note = format!("earth.{key} stands in for the {} {unit} of the place", number(there.length()));
+    let note = format!("earth.{key} replaces the {} {unit} of the place", number(there.length()));
     Found::left_out(survey.largest_of_nav(there - used), "largest").by(format!("earth.{key}")).noting(note)
 }
 

@@ -171,9 +171,9 @@ mod tests {
     #[test]
     fn a_bad_spelling_is_told_what_would_be_right() {
         let cases: &[(&str, &[&str])] = &[
-            ("tcp:127.0.0.1:4560", &["two readings", "tcpin:127.0.0.1:4560", "tcpout:127.0.0.1:4560"]),
-            ("udp:", &["two readings", "udpin:", "udpout:"]),
-            ("udp", &["two readings", "udpin:", "udpout:"]),
+            ("tcp:127.0.0.1:4560", &["is ambiguous", "tcpin:127.0.0.1:4560", "tcpout:127.0.0.1:4560"]),
+            ("udp:", &["is ambiguous", "udpin:", "udpout:"]),
+            ("udp", &["is ambiguous", "udpin:", "udpout:"]),
             ("udp:9000", &["udpin:127.0.0.1:9000", "udpout:127.0.0.1:9000"]),
             ("udp://10.0.0.1:14550", &["udpin:10.0.0.1:14550", "udpout:10.0.0.1:14550"]),
             ("COM3", &["`COM3`", "/dev/ttyACM0", "list ports"]),

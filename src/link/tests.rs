@@ -420,7 +420,7 @@ async fn a_place_that_cannot_be_reached_or_listened_on_is_named() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let place = listener.local_addr().unwrap();
     let text = refusal(&format!("tcpin:{place}")).await;
-    assert!(text.contains("another program has that port"), "{text}");
+    assert!(text.contains("another program uses that port"), "{text}");
     assert!(text.contains(&place.to_string()), "{text}");
     drop(listener);
     let text = refusal(&format!("tcpout:{place}")).await;

@@ -122,7 +122,7 @@ impl Section<'_> {
         let (first, second) = (end(low, kind), end(high, second));
         let (first, second) = (first?, second?);
         if shape == Shape::Uniform && (0..3).any(|axis| first[axis] > second[axis]) {
-            self.note(&entry.node.place, format!("`{key}`: `uniform` takes its lower end first"));
+            self.note(&entry.node.place, format!("`{key}`: `uniform` takes the lower end first"));
             return None;
         }
         Some((shape, first, second))

@@ -17,7 +17,7 @@ pub(super) static KIND: TermKind = TermKind {
             name: "hard_iron",
             takes: Takes::BodyVector(Kind::FIELD),
             default: Some("0"),
-            about: "field of what is magnetised on the vehicle",
+            about: "field of the vehicle's magnetised parts",
         }]
     },
     build: |values, _| {

@@ -31,7 +31,7 @@ pub(super) static KIND: TermKind = TermKind {
         }
         let Some(range) = values.scalar("range") else {
             let message = format!(
-                "is a part of full scale, so it needs a `range` beside it, such as range = \"{}\"",
+                "is a fraction of full scale, so it also needs a `range`, such as range = \"{}\"",
                 context.sensor.units().reading.example()
             );
             return Err(KeyError::new("nonlinearity", message));

@@ -17,7 +17,7 @@ pub(super) static KIND: TermKind = TermKind {
             name: "soft_iron",
             takes: Takes::Matrix(Kind::RATIO),
             default: None,
-            about: "what the field around the magnetometer is multiplied by; 1 without soft iron",
+            about: "matrix that multiplies the field around the magnetometer; identity without soft iron",
         }]
     },
     build: |values, _| {

@@ -14,7 +14,7 @@ use glam::DVec3;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "white_noise",
-    about: "a fresh normal number each sample",
+    about: "a new normal random number each sample",
     serves: Kinds::ALL,
     stage: Stage::Reading,
     needs: &[],
@@ -24,9 +24,9 @@ pub(super) static KIND: TermKind = TermKind {
             key(
                 "noise_std",
                 units.reading.signed(Sign::NonNegative),
-                "standard deviation of each sample, whatever the rate",
+                "standard deviation of each sample, at any rate",
             ),
-            key("noise_variance", units.variance, "variance of each sample, whatever the rate (the paper's)"),
+            key("noise_variance", units.variance, "variance of each sample, at any rate (the paper's)"),
             key("noise_density", units.density, "one-sided density, as datasheets print it: σ = N·√(rate/2)"),
         ];
         if let Some((name, kind)) = units.random_walk {
@@ -66,7 +66,7 @@ pub fn sigma(values: &Values, sensor: SensorKind, rate: Rate) -> Result<DVec3, K
         if let Some((other, _)) = before.iter().find(|(_, other)| clash(*other)) {
             return Err(KeyError::new(
                 key,
-                format!("the {sensor}'s white noise is given by `{other}` already: keep one of the two"),
+                format!("the {sensor}'s white noise is already given by `{other}`: keep only one"),
             ));
         }
         before.push((key, given));

@@ -1,7 +1,7 @@
 //! Which rows keep to the order of time, and where a clock begins anew.
 //!
 //! A row with the time of the newest before it is a duplicate. One that is older, while within a few rows time goes on
-//! from the newest, was overtaken on its way. One to three rows that are ahead of all that follow them are ahead. Any
+//! from the newest, was overtaken on its way. One to three rows that are later than all rows after it them are ahead. Any
 //! other step back is a clock that was set or begins anew. A counter of 32 bits that wraps goes on.
 
 use super::TimeUnit;
@@ -20,7 +20,7 @@ pub(super) enum Fate {
 
 /// As many rows may be overtaken before time goes on.
 const FEW: usize = 8;
-/// As many rows may be ahead of all that follow.
+/// As many rows may be later than all rows after it.
 const AHEAD: usize = 3;
 /// Where a counter of 32 bits begins anew.
 const TURN: i128 = (1 << 32) * TICKS;

@@ -129,9 +129,9 @@ fn limits_hold_for_what_faults_did_and_mistakes_are_placed() {
     for (fault, why) in [
         ("kind = \"drop\"\nsensor = \"gyro\"", "drop happens to packets"),
         ("kind = \"off\"\noutput = 0\nsensor = \"gyro\"", "off is a fault of a sensor"),
-        ("kind = \"drop\"\noutput = 1", "names none of the scene's outputs, which are 0 \"mpu@pty\""),
-        ("kind = \"drop\"\noutput = \"mpu@/dev/ttyACM0\"", "names none of the scene's outputs"),
-        ("kind = \"drop\"\noutput = \"nothing\"", "is no PROTOCOL@LINK"),
+        ("kind = \"drop\"\noutput = 1", "matches none of the scene's outputs, which are 0 \"mpu@pty\""),
+        ("kind = \"drop\"\noutput = \"mpu@/dev/ttyACM0\"", "matches none of the scene's outputs"),
+        ("kind = \"drop\"\noutput = \"nothing\"", "is not PROTOCOL@LINK"),
         ("kind = \"drop\"\noutput = true", "its place in the scene from 0 on"),
         ("kind = \"drop\"\nshare = \"120 %\"", "at most 100 %"),
         ("kind = \"drop\"\nbits = 3", "`bits` is not a key of"),

@@ -308,8 +308,8 @@ fn mistakes_say_what_would_be_right() {
     std::fs::write(&empty, []).unwrap();
     let cases: &[(&[&str], &[&str])] = &[
         (&["mpu"], &["PROTOCOL@LINK"]),
-        (&["can@/dev/ttyUSB0"], &["`can` is no protocol"]),
-        (&["mpu@tcp:1"], &["two readings"]),
+        (&["can@/dev/ttyUSB0"], &["`can` is not a protocol"]),
+        (&["mpu@tcp:1"], &["is ambiguous"]),
         (&["mpu@/dev/ttyNONE7"], &["no port /dev/ttyNONE7"]),
         (&[&format!("mavlink@{path}")], &["file and no port", &format!("file:{path}")]),
         (&["mpu@file:/nowhere/at/all"], &["cannot read /nowhere/at/all"]),

@@ -198,8 +198,8 @@ fn what_cannot_be_scored_is_told_in_one_message_each() {
             "none of its 1 attitudes is at a time at which the truth is known",
         ),
         (vec!["vqf", "--axes", "xyz"], "write ned-frd or enu-flu"),
-        (vec!["vqf", "--limit", "rms<1"], "there is no `rms`, but name, source, samples, rms_deg"),
-        (vec!["vqf", "--limit", "estimates.ekf.rms_deg<1"], "there is no `ekf`, but vqf"),
+        (vec!["vqf", "--limit", "rms<1"], "`rms` does not exist; name, source, samples, rms_deg"),
+        (vec!["vqf", "--limit", "estimates.ekf.rms_deg<1"], "`ekf` does not exist; vqf"),
     ] {
         let (_, said, code) = flight.score(&arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");
