@@ -94,7 +94,7 @@ fn budgets(plan: &Plan) -> Vec<Budget> {
     Budget::all(plan, &plan.outputs, 1.0)
 }
 
-/// What a user should think about before running the scene.
+/// Warnings to consider before running the scene.
 fn warnings(plan: &Plan) -> Vec<String> {
     let mut warnings = plan.warnings.clone();
     for sensor in &plan.sensors {

@@ -1,4 +1,4 @@
-//! What one command writes may be neither what it reads nor what it writes elsewhere: refused before anything is
+//! A command must not overwrite what it reads, or write two outputs to one place: refused before anything is
 //! touched.
 
 use super::Refusal;

@@ -69,7 +69,7 @@ pub fn from_zero(text: &str) -> Result<SimTime, String> {
 pub enum Alignment {
     /// Nothing
     None,
-    /// One constant heading, which an estimate without a magnetometer cannot know
+    /// One constant heading, which is arbitrary without a magnetometer
     Heading,
     /// One constant rotation of the world
     World,

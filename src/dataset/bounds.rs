@@ -16,7 +16,7 @@ const CELL: u64 = 25;
 pub struct Bounds {
     /// Samples made, of all sensors: exact where no fault withholds some.
     pub samples: u64,
-    /// Bytes of the tables of a dataset in CSV: at the most.
+    /// Bytes of a dataset's CSV tables: an upper bound.
     pub bytes: u64,
     /// Seconds of scene.
     pub seconds: f64,

@@ -60,7 +60,7 @@ pub enum DatasetError {
     #[error("reference.csv cannot be computed: {0}; choose another `method` in [reference]")]
     Reference(#[source] ReferenceError),
     /// `method = "auto"` found none.
-    #[error("reference.csv cannot be computed: {0}; raise `tolerance` in [reference]")]
+    #[error("reference.csv cannot be computed: {0}; see `tolerance` in [reference]")]
     Tolerance(#[source] ToleranceError),
     /// Asked to stop.
     #[error("stopped before the dataset was complete; nothing is kept")]

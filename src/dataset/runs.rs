@@ -71,7 +71,7 @@ pub struct RunOptions<'a> {
     pub force: bool,
     /// In which formats.
     pub formats: Vec<&'static Format>,
-    /// Makes files of a run's figures, where there are to be some.
+    /// Makes files of a run's figures, if requested.
     pub draw: Option<Draw<'a>>,
     /// How many at a time.
     pub threads: usize,
@@ -81,7 +81,7 @@ pub struct RunOptions<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// What became of the runs asked for.
+/// The outcome of the requested runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Made {
     /// Made now.

@@ -18,7 +18,7 @@ const FIELD_RADIUS: f64 = 6_371_200.0;
 /// The free-air gradient of gravity, 1/s² (Heiskanen and Moritz, *Physical Geodesy*, 1967, sec. 2-9).
 const FREE_AIR: f64 = 3.086e-6;
 
-/// What is said of a size that is a bound.
+/// How a size that is a bound is described.
 const AT_MOST: &str = "at most";
 
 /// The Earth's rotation, which a gyroscope senses and this program's truth, relative to nav, has not:

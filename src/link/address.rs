@@ -1,4 +1,4 @@
-//! Where a link goes, as the user spells it.
+//! The address of a link, as the user writes it.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -31,7 +31,7 @@ pub enum Address {
     TcpIn(Endpoint),
     /// A TCP connection to a listening peer.
     TcpOut(Endpoint),
-    /// A UDP socket that answers whoever sends to it first.
+    /// A UDP socket that answers its first sender.
     UdpIn(Endpoint),
     /// A UDP socket that sends to one place.
     UdpOut(Endpoint),

@@ -1,4 +1,4 @@
-//! Speeds of serial lines: what they carry, and how one is written after an address.
+//! Baud rates: their capacity, and how one is written after an address.
 
 use std::path::PathBuf;
 

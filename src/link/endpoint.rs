@@ -1,4 +1,4 @@
-//! A host and a port, as users spell them.
+//! A host and a port, as users write them.
 
 use super::problem::Problem;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! Why a link could not be had.
+//! Errors of opening and using a link.
 
 use std::io;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! A link opened to hear what somebody sends, nothing being sent from here but, where asked for, a greeting.
+//! A link opened to receive; it sends nothing except an optional greeting.
 
 use super::address::Address;
 use super::{Kind, Link, LinkError};

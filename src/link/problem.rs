@@ -1,4 +1,4 @@
-//! What is wrong with the spelling of an address.
+//! Errors in the spelling of an address.
 
 /// What is wrong with a spelling, and what would be right.
 #[derive(Debug)]

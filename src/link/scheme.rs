@@ -1,4 +1,4 @@
-//! The kinds of link there are, as a table: adding a kind is one file and one line here.
+//! The table of link kinds: adding a kind is one file and one line here.
 
 use super::address::Address;
 use super::endpoint::{LOOPBACK, is_number};

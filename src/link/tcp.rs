@@ -1,4 +1,4 @@
-//! A TCP connection to one peer, waited for (`tcpin`) or made (`tcpout`).
+//! A TCP connection to one peer, accepted (`tcpin`) or opened (`tcpout`).
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpStream};

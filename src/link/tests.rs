@@ -424,7 +424,7 @@ async fn a_place_that_cannot_be_reached_or_listened_on_is_named() {
     assert!(text.contains(&place.to_string()), "{text}");
     drop(listener);
     let text = refusal(&format!("tcpout:{place}")).await;
-    assert!(text.contains("nobody listens there"), "{text}");
+    assert!(text.contains("nothing listens there"), "{text}");
     assert!(text.contains(&format!("`tcpout:{place}`")), "{text}");
     let text = refusal("udpin:192.0.2.1:5000").await;
     assert!(text.contains("no such address"), "{text}");

@@ -1,6 +1,6 @@
-//! UDP datagrams, a packet each, to whoever sent first (`udpin`) or to one place (`udpout`).
+//! UDP datagrams, one per packet, to the first sender (`udpin`) or to one address (`udpout`).
 //!
-//! Nobody can tell whether a datagram arrived: the link is never `Gone` because nobody listens.
+//! UDP does not report whether a datagram arrived, so a missing listener never makes the link `Gone`.
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};

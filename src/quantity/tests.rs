@@ -218,11 +218,11 @@ fn a_refusal_says_what_is_wrong_where_and_what_would_be_right() {
         (Kind::FIELD, "5 m s^-2", "units are joined", "s"),
         (Kind::ACCELERATION, "5 m*s-2", "a power is written as in `s^-1`", "-"),
         (Kind::FIELD, "[1, 2] uT", "a vector has 3 values, not 2", "[1, 2]"),
-        (Kind::FIELD, "[1, 2, 3, 4] uT", "here are 4", "[1, 2, 3, 4]"),
+        (Kind::FIELD, "[1, 2, 3, 4] uT", "values, not 4", "[1, 2, 3, 4]"),
         (Kind::FIELD, "[1 uT, 2 uT, 3 uT]", "one unit follows the bracket", "u"),
         (Kind::FIELD, "[1, 2", "a vector is written as in", ""),
         (Kind::FIELD, "[]", "a number is required", "]"),
-        (Kind::FIELD, "[1, 2, 3] uT", "is a vector, but a magnetic field of one value", "[1, 2, 3]"),
+        (Kind::FIELD, "[1, 2, 3] uT", "is a vector, but a magnetic field with one value", "[1, 2, 3]"),
         (Kind::FIELD, "1/0 uT", "a fraction cannot have denominator 0", "1/0"),
         (Kind::MAG_VARIANCE, "-1 uT^2", "is negative, but a magnetometer noise variance", "-1"),
         (Kind::RATE, "0 Hz", "is not above zero", "0"),
@@ -276,7 +276,7 @@ fn a_rate_is_an_exact_fraction() {
         ("1e300 Hz", "is above 1 MHz"),
         ("133.3333333333 Hz", "write a fraction, such as \"400/3 Hz\""),
         ("1e-300 Hz", "too many digits"),
-        ("[1, 2, 3] Hz", "is a vector, but a rate of one value"),
+        ("[1, 2, 3] Hz", "is a vector, but a rate with one value"),
     ] {
         let said = rate(text).unwrap_err().to_string();
         assert!(said.contains(message), "{text}: {said}");

@@ -170,8 +170,8 @@ mod tests {
             assert!(text.parse::<Limit>().unwrap_err().to_string().contains(says), "{text}");
         }
         for (text, says) in [
-            ("sensors.gyro.late.p99<1", "no `late`, but name, late_us"),
-            ("sensors.mag.late_us.p99<1", "no `mag`, but gyro"),
+            ("sensors.gyro.late.p99<1", "`late` does not exist; name, late_us"),
+            ("sensors.mag.late_us.p99<1", "`mag` does not exist; gyro"),
             ("sensors<1", "a list"),
             ("sensors.gyro.late_us<1", "a group"),
         ] {

@@ -144,7 +144,7 @@ impl Shape {
         }
     }
 
-    /// What that stands for between two ends, or about a mean and with a standard deviation.
+    /// What that means between two ends, or about a mean and with a standard deviation.
     fn value(self, a: f64, b: f64, fresh: f64) -> f64 {
         match self {
             Shape::Uniform => a + (b - a) * fresh,

@@ -1,4 +1,4 @@
-//! `[[fault]]`: what a sensor does wrong for a while, or what becomes of an output's packets.
+//! `[[fault]]`: what a sensor does wrong for a while, or how an output's packets are damaged or lost.
 
 use super::document::Value;
 use super::output::{Destination, Output};

@@ -69,7 +69,7 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     (
         "fault",
         "hurts",
-        "for `corrupt`: \"packet\" (default) flips bits of the payload; \"framing\" flips framing bits too and can damage the next packet",
+        "for `corrupt`: \"packet\" (default) flips bits inside it only; \"framing\" flips framing bits too and can damage the next packet",
     ),
     ("fault", "pieces", "for `split`: how many pieces a packet is sent in (default 2)"),
     ("fault", "gap", "for `split`: the time between pieces (default \"1 ms\")"),

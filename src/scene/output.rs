@@ -68,7 +68,7 @@ impl fmt::Display for Destination {
     }
 }
 
-/// What becomes of a packet that its link does not take when it is due.
+/// What to do with a packet that its link does not accept when it is due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overload {
     /// It is dropped. Whatever is sent is on time: a flight controller that stamps samples on arrival is never told
@@ -104,11 +104,11 @@ pub struct Output {
     pub to: Destination,
     /// How the protocol lays its packets out.
     pub wire: wire::Options,
-    /// What becomes of a packet that the link does not take in time.
+    /// What to do with a packet that the link does not accept in time.
     pub overload: Overload,
     /// Whether to start although the baud rate does not carry the packets.
     pub force: bool,
-    /// What becomes of its packets on their way.
+    /// The faults of its packets.
     pub faults: Vec<wire::Fault>,
 }
 

@@ -18,7 +18,7 @@ pub struct Target {
     pub link: Option<&'static str>,
     /// The speed of a serial port that was given none.
     pub baud: Option<u32>,
-    /// The vehicle is held still for so long at the least, and until its estimator is up.
+    /// The vehicle is held still for at least this long, and until its estimator is up.
     pub rest: SimTime,
     /// Samples a second that it takes at most, Hz.
     pub most_hz: Option<u32>,
@@ -93,7 +93,7 @@ impl Target {
         TARGETS.iter().find(|target| target.name == name)
     }
 
-    /// What it stands for, a line each.
+    /// What it sets, a line each.
     pub fn expansion(&self) -> Vec<String> {
         let mut lines = vec![format!("protocol {}", self.protocol.name())];
         lines.extend(self.link.map(|link| format!("link {link} by default")));

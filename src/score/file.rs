@@ -1,4 +1,4 @@
-//! Estimates from files: a table with a header, a TUM trajectory, a PX4 ULog; which of them, the file itself says.
+//! Estimates from files: a table with a header, a TUM trajectory or a PX4 ULog, recognised by content.
 
 mod table;
 mod ulog;

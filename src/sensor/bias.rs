@@ -1,4 +1,4 @@
-//! Turn-on bias: fixed, or drawn once a run.
+//! Turn-on bias: fixed, or drawn once per run.
 
 use super::{Block, Context, Kinds, Stage, Term, TermKind};
 use crate::double::Double;

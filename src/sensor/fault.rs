@@ -1,4 +1,4 @@
-//! Faults of a sensor: what it does wrong for a while, after everything else, in the words of PX4's failure injection.
+//! Faults of a sensor: temporary misbehaviour, applied after everything else, in the words of PX4's failure injection.
 //!
 //! A fault acts on the samples of [start, end). Those that withhold samples leave the others on their ticks. Random
 //! ones draw from the stream `fault/N/KIND`, N counting the sensor's faults from 0.

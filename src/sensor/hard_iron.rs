@@ -1,4 +1,4 @@
-//! Hard iron: what is magnetised on the vehicle adds a field that turns with it: `reading = field + h` (Vasconcelos
+//! Hard iron: magnetised parts of the vehicle add a field that turns with it: `reading = field + h` (Vasconcelos
 //! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
 
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};

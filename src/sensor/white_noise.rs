@@ -1,9 +1,9 @@
-//! White noise: a fresh normal number each sample.
+//! White noise: a new normal random number each sample.
 //!
 //! Its size may be given per sample (`noise_std`, `noise_variance`: the paper), as a one-sided density N
 //! (`noise_density`, what part datasheets print: σ = N·√(fs/2)), or as the Allan deviation at 1 s
 //! (`angle_random_walk`, `velocity_random_walk`, what Kalibr calls a noise density: σ = N·√fs).
-//! `noise_density = √2 · random walk`: the factor on which users of every tool trip.
+//! `noise_density = √2 · random walk`: a factor that users often miss.
 
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};

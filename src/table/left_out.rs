@@ -1,4 +1,4 @@
-//! Rows that are left out, counted and told.
+//! Rows that are left out, counted and reported.
 
 /// How many rows are left out, and why.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]

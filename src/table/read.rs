@@ -24,7 +24,7 @@ const COMMENTS: usize = 64;
 pub struct Table<R> {
     pub(super) columns: Columns,
     delimiter: u8,
-    /// Whether a comma stands for the decimal point.
+    /// Whether a comma is the decimal point.
     pub(super) comma: bool,
     /// Rows that were read to find the header.
     held: VecDeque<Numbered>,

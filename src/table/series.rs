@@ -1,4 +1,4 @@
-//! All rows of a table that can be used, in order.
+//! All usable rows of a table, in order.
 
 use super::cells::{self, Cell};
 use super::choice::Clock;

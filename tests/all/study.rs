@@ -128,7 +128,7 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
             &["acuracy", "coning"],
             "`acuracy` is not a study (accuracy, stability, cost, allan, all); did you mean `accuracy`?",
         ),
-        (&["coning", "still"], "`coning` is a scene, and so `still` is one too many"),
+        (&["coning", "still"], "`coning` is a scene, so `still` is a second one"),
         (&["accuracy", "nowhere.toml"], "neither a scene file"),
     ] {
         let why = refusal(arguments);

@@ -1,4 +1,4 @@
-//! The table of effects for a person: what the scene models, and what it leaves out.
+//! The table of effects as text: what the scene models, and what it leaves out.
 
 use super::noise;
 use crate::cli::terminal::Stream;

@@ -1,4 +1,4 @@
-//! The plan for a person.
+//! The plan as text.
 
 use super::effects;
 use super::{Checked, Noise, budgets, drawn, noise, terms, warnings};

@@ -1,4 +1,4 @@
-//! Which columns of a table are read, where their names do not say it.
+//! Which columns of a table to read, if their names do not say.
 
 use crate::quantity;
 use crate::table::{Choice, TimeUnit};

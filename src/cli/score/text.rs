@@ -1,4 +1,4 @@
-//! The comparison as a person reads it.
+//! The comparison as text.
 
 use super::hints::angle;
 use crate::cli::terminal::Stream;

@@ -1,5 +1,5 @@
-//! The unit of times that no name says: one in which rows come at a rate that a log has, the file lasts, and truth and
-//! estimate overlap. Where two fit, the user is asked.
+//! The unit of times whose name has none: one that gives a plausible row rate and duration, and an overlap of truth and
+//! estimate. If two fit, the user must choose.
 
 use super::Refusal;
 use crate::table::{TimeUnit, Times};

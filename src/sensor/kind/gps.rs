@@ -1,4 +1,4 @@
-//! `[gps]`: a receiver's position and velocity, and what it claims of them.
+//! `[gps]`: a receiver's position and velocity, with its reported accuracy.
 
 use super::{Row, Senses, Shape, Shown, Table};
 use crate::keys::{Key, Takes, Values};
