@@ -164,7 +164,7 @@ fn what_cannot_be_known_is_no_figure_but_exit_code_1() {
     let own = bench.put("own.csv", &table(0.0));
     let scored = score(&[truth.to_str().unwrap(), &own]);
     assert_eq!(scored.code, Some(0), "{}", scored.said);
-    assert!(scored.said.contains("begin and end with the truth's"), "{}", scored.said);
+    assert!(scored.said.contains("start and end with the truth's"), "{}", scored.said);
     // And so is the rest before, where a run's report says how long it was.
     let mut text = String::from("t_s,qw,qx,qy,qz\n");
     let (_, first) = rows[0];
@@ -259,7 +259,7 @@ fn nothing_is_taken_out_of_the_datasets_own_clock_unless_asked() {
     };
     assert!(largest("0") > 2.0 && largest("fit") < 0.2 && largest("80ms") < 0.2);
     let wrong = score(&[truth, &late, "--delay", "soon"]);
-    assert!(wrong.code == Some(2) && wrong.said.contains("or fit to find it"), "{}", wrong.said);
+    assert!(wrong.code == Some(2) && wrong.said.contains("or fit to estimate it"), "{}", wrong.said);
 }
 
 #[test]

@@ -311,7 +311,7 @@ fn mistakes_say_what_would_be_right() {
         (&["can@/dev/ttyUSB0"], &["`can` is not a protocol"]),
         (&["mpu@tcp:1"], &["is ambiguous"]),
         (&["mpu@/dev/ttyNONE7"], &["no port /dev/ttyNONE7"]),
-        (&[&format!("mavlink@{path}")], &["file and no port", &format!("file:{path}")]),
+        (&[&format!("mavlink@{path}")], &["a file, not a port", &format!("file:{path}")]),
         (&["mpu@file:/nowhere/at/all"], &["cannot read /nowhere/at/all"]),
         (&[&format!("mpu@file:{path}")], &["bytes came", "no valid mpu packet", "read as mavlink"]),
         (&[&format!("mpu@file:{noise}")], &["12345 bytes", "another protocol or another baud rate"]),
