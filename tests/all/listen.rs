@@ -318,7 +318,10 @@ fn mistakes_say_what_would_be_right() {
         (&[&format!("mpu@file:{empty}")], &["not a byte came", "empty"]),
         (&["mpu@udpin:0", "--wait", "100ms"], &["not a byte came", "within 0.1 s", "udpin:0.0.0.0"]),
         (&["mpu@pty", "--wait", "100ms"], &["not a byte came", "into the path"]),
-        (&["mpu@udpin:0", "--limit", "sensors.gyro.late_us.p99<3"], &["no `late_us`", "jitter_us"]),
+        (
+            &["mpu@udpin:0", "--limit", "sensors.gyro.late_us.p99<3"],
+            &["`late_us` does not exist", "jitter_us"],
+        ),
     ];
     for (arguments, says) in cases {
         let (code, _, text) = whole(&[&["listen"], *arguments].concat());
