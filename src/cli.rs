@@ -23,7 +23,7 @@ use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
 /// A rate table in software: plays a scene and writes its gyro, accelerometer and magnetometer readings, on time, to
-/// a flight controller; or makes a dataset of them with exact truth.
+/// a flight controller, or makes a dataset of them with exact truth.
 #[derive(Debug, Parser)]
 #[command(name = "ratetable", version, about, propagate_version = true, arg_required_else_help = true, after_help = examples::PROGRAM)]
 struct Arguments {
@@ -33,10 +33,10 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Stream a scene in real time; without a link, demonstrate it on a pty pair with an AHRS on the other end
+    /// Stream a scene in real time; without a link, run a demonstration over a pty with an AHRS on the other end
     #[command(after_help = examples::RUN)]
     Run(run::Arguments),
-    /// Measure how late and how even a stream is, at both ends and against a bare timer
+    /// Measure a stream's lateness and jitter, at both ends and against a bare timer
     #[command(after_help = examples::TIMING)]
     Timing(timing::Arguments),
     /// Make a dataset: readings, exact truth, manifest
@@ -45,16 +45,16 @@ enum Command {
     /// Read a scene and show the plan: sensors, noise, bytes a second, warnings
     #[command(after_help = examples::CHECK)]
     Check(check::Arguments),
-    /// Measure anybody's stream: rates, intervals, losses and damage of each sensor
+    /// Measure any stream: rates, intervals, losses and damage of each sensor
     #[command(after_help = examples::LISTEN)]
     Listen(listen::Arguments),
-    /// Judge recorded attitude estimates and filters against the truth: errors, delay, mistakes of axes and order
+    /// Score recorded attitude estimates and filters against the truth: errors, delay, axis and order mistakes
     #[command(after_help = examples::SCORE)]
     Score(score::Arguments),
-    /// Compare the attitude methods: error against cost on many motions, and what breaks each
+    /// Compare the attitude methods: error against cost on many motions, and what makes each fail
     #[command(after_help = examples::STUDY)]
     Study(study::Arguments),
-    /// Show what there is: scenes, parts, motions, methods, keys, protocols, targets, links, formats, fields, logs, ports
+    /// List scenes, parts, motions, methods, keys, protocols, targets, links, formats, fields, logs or ports
     #[command(after_help = examples::LIST)]
     List(list::Arguments),
     /// Print a shell's completions of this command line
@@ -143,12 +143,12 @@ fn explained(error: &clap::Error) -> u8 {
     }
 }
 
-/// Names the arguments that are no UTF-8.
+/// Names the arguments that are not UTF-8.
 fn unreadable() {
     let broken = std::env::args_os().enumerate().skip(1).filter(|(_, argument)| argument.to_str().is_none());
     for (i, argument) in broken {
         tell(&format!(
-            "argument {i}, {argument:?}, is no UTF-8: scenes, keys and links are named in UTF-8, and only the folder of --out may be called otherwise; rename the file, or set the terminal to UTF-8"
+            "argument {i}, {argument:?}, is not UTF-8: scenes, keys and links need UTF-8 names, and only the --out folder may have another; rename the file, or set the terminal to UTF-8"
         ));
     }
 }
@@ -156,8 +156,8 @@ fn unreadable() {
 /// Writes a result to standard output.
 ///
 /// # Errors
-/// It was not taken, as of a full disk: whoever asked for the result does not have it. A reader that has left, as
-/// `head` does, wants no more of it, which is no failure.
+/// It was not written, for example because the disk is full. A reader that has left, as
+/// `head` does, is not a failure.
 fn say(text: &str) -> Result<(), Refusal> {
     let mut out = io::stdout().lock();
     written(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
@@ -172,8 +172,8 @@ fn written(result: io::Result<()>) -> Result<(), Refusal> {
     }
 }
 
-/// Writes a line for a person to standard error. Where that is closed or full nobody is left to be told so: the exit
-/// code says what came of the command.
+/// Writes a line for a person to standard error. If that is closed or full the line is lost: the exit
+/// code gives the command's outcome.
 fn tell(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", line.strip_suffix('\n').unwrap_or(line));
 }

@@ -34,7 +34,7 @@ pub struct Found {
     pub statistic: &'static str,
     /// Whether the scene's readings have it.
     pub modelled: bool,
-    /// The scene's key that it comes from, or would; `None` where this version does not model it.
+    /// The scene's key that it comes from, or would; `None` where not modelled in this version.
     pub key: Option<String>,
     /// What else a reader should know.
     pub note: Option<String>,
@@ -206,7 +206,7 @@ pub struct Effect {
     pub against: Against,
     /// What follows.
     pub verdict: Verdict,
-    /// The key that it comes from, or would; absent where this version does not model it.
+    /// The key that it comes from, or would; absent where not modelled in this version.
     pub key: Option<String>,
     /// What else a reader should know.
     pub note: Option<String>,

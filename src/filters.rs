@@ -1,4 +1,4 @@
-//! Attitude filters of other makes behind one trait: what a dataset's readings are worth to each.
+//! Third-party attitude filters behind one trait: how well each does on a dataset's readings.
 //!
 //! Each has a file that brings its axes, units and start to ours: vectors in the body's axes (Forward-Right-Down),
 //! attitude from there to North-East-Down. All start from the same first readings, take a reading when it is due, and
@@ -14,7 +14,7 @@ use crate::time::SimTime;
 use glam::{DMat3, DQuat, DVec3};
 use std::collections::VecDeque;
 
-/// A filter that is told of each reading as it comes; several of one instant in the order gyro, accelerometer,
+/// A filter that takes each reading as it comes; several of one instant in the order gyro, accelerometer,
 /// magnetometer.
 trait Filter {
     /// Angular rate, rad/s, `dt` seconds after the one before (0 for the first).

@@ -36,7 +36,7 @@ pub enum Takes {
     BodyVector(Kind),
     /// A vector in nav axes, turned from the scene's axes to North-East-Down; or one number for all three.
     NavVector(Kind),
-    /// One number, of a sensor that has no more: it stands for x, and y and z are 0.
+    /// One number, of a sensor that has no more: it is x, and y and z are 0.
     OneAxis(Kind),
     /// The size of a count, counts a unit, or bits.
     Resolution(Kind),
@@ -65,7 +65,7 @@ pub enum Takes {
 pub struct Nested {
     /// Its keys.
     pub keys: &'static [Key],
-    /// The key that a value stands for which is no table: `filter = "92 Hz"`.
+    /// The key that a value sets if it is not a table: `filter = "92 Hz"`.
     pub alone: Option<&'static str>,
     /// Whether there may be an array of them.
     pub many: bool,

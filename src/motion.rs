@@ -61,7 +61,7 @@ pub trait Motion: Debug + Send + Sync {
         None
     }
 
-    /// What a user should know of it before it is played.
+    /// Warnings about it before it plays.
     fn warnings(&self) -> &[String] {
         &[]
     }

@@ -13,7 +13,7 @@ pub fn all_cores() -> usize {
 /// Told, from any thread, how many of how many jobs are done.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
-/// `work(0), …, work(count − 1)`, each done once by one of `threads` threads, the next job to whoever is free.
+/// `work(0), …, work(count − 1)`, each done once by one of `threads` threads, the next job to the next free thread.
 pub fn map<T: Send>(
     threads: usize,
     count: usize,

@@ -82,7 +82,7 @@ impl Quantity {
     /// Reads any quantity, whatever it measures.
     ///
     /// # Errors
-    /// A text that is no number or vector with a known unit, or a value too large for an `f64`.
+    /// A text that is not a number or vector with a known unit, or a value too large for an `f64`.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
         parse::quantity(text, None)
     }

@@ -1,7 +1,7 @@
-//! Streams of random numbers, one a (sensor, error term, axis), each from the scene's seed and its own name.
+//! Streams of random numbers, one per (sensor, error term, axis), each from the scene's seed and its own name.
 //!
 //! The generator is xoshiro256++ (Blackman & Vigna, ACM TOMS 47(4), 2021), named rather than left to a library's
-//! default so that the same scene gives the same bytes for ever. A stream depends on nothing but seed and name:
+//! default so that the same scene gives the same bytes in every version. A stream depends on nothing but seed and name:
 //! adding a sensor or a term changes no other's noise. Normal numbers, of which most of a sample's cost consists, come
 //! from [`Normals`]: sixteen of these generators side by side.
 

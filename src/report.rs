@@ -190,7 +190,7 @@ pub struct LinkReport {
     pub dropped: u64,
     /// Packets still on their way to it when the run was stopped.
     pub queued: u64,
-    /// What becomes of a packet that it does not take in time: `drop-newest`, `drop-oldest`, `stretch`.
+    /// What happens to a packet that it does not accept in time: `drop-newest`, `drop-oldest`, `stretch`.
     pub overload: String,
     /// The most bytes that it had taken and the other side had not, where the system tells, looked at every 20 ms.
     pub queue_bytes: Option<u64>,

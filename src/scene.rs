@@ -92,7 +92,7 @@ pub struct Plan {
     pub attached: Vec<Attached>,
     /// Every file that it was read from: the scene itself, where it is one, and those that it names.
     pub files: Vec<PathBuf>,
-    /// What a user should know of the scene before it is played, each with its place.
+    /// Warnings about the scene before it plays, each with its place.
     pub warnings: Vec<String>,
     /// The scene as resolved, in TOML: playing it gives the same bytes.
     pub resolved: String,

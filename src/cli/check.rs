@@ -94,7 +94,7 @@ fn budgets(plan: &Plan) -> Vec<Budget> {
     Budget::all(plan, &plan.outputs, 1.0)
 }
 
-/// What a user should think about before running the scene.
+/// Warnings to consider before running the scene.
 fn warnings(plan: &Plan) -> Vec<String> {
     let mut warnings = plan.warnings.clone();
     for sensor in &plan.sensors {
@@ -103,7 +103,7 @@ fn warnings(plan: &Plan) -> Vec<String> {
             && lsb(&sensor.values, sensor.kind).is_none()
         {
             warnings.push(format!(
-                "{} has neither noise nor resolution: while the vehicle is still its readings repeat, and a flight controller takes such a sensor for dead (PX4: 100 equal values in a row)",
+                "{} has neither noise nor resolution: while the vehicle is still its readings repeat, and a flight controller treats such a sensor as dead (PX4: 100 equal values in a row)",
                 sensor.kind
             ));
         }

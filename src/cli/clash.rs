@@ -1,4 +1,4 @@
-//! What one command writes may be neither what it reads nor what it writes elsewhere: refused before anything is
+//! A command must not overwrite what it reads, or write two outputs to one place: refused before anything is
 //! touched.
 
 use super::Refusal;
@@ -25,31 +25,29 @@ pub fn outputs(plan: &Plan, outputs: &[Output], besides: &Besides<'_>) -> Result
         let other = outputs[..i].iter().find(|other| other.to.address.is_same(address));
         if let Some(other) = other {
             return Err(Refusal(format!(
-                "{} and {to} go to the same place, where their packets would mix: give each a place of its own",
+                "{} and {to} go to the same place and their packets would mix: give each its own place",
                 other.to
             )));
         }
         if besides.ground.is_some_and(|ground| ground.is_same(address)) {
-            return Err(Refusal(format!(
-                "{to} goes where --qgc passes its messages: give each a port of its own"
-            )));
+            return Err(Refusal(format!("{to} goes to the port that --qgc uses: give each its own port")));
         }
         if besides.report && !address.is_stdout() && address.is_same(&Address::Stdout) {
             return Err(Refusal(format!(
-                "{to} is the file that standard output, with the report, goes to: give each a file of its own"
+                "{to} is the file that standard output and the report go to: give each its own file"
             )));
         }
         let Some(identity) = address.identity() else { continue };
         if let Some(file) = plan.files.iter().find(|file| Identity::of(file).is(&identity)) {
             let file = file.display();
             return Err(Refusal(format!(
-                "{to} would replace {file}, which the scene is read from: name another file"
+                "{to} would replace {file}, which the scene reads: name another file"
             )));
         }
         if let Some((out, _)) = out.as_ref().filter(|(_, out)| identity.is_within(out)) {
             let out = out.display();
             return Err(Refusal(format!(
-                "{to} is in the output folder {out}, whose files belong together: name a file outside of it"
+                "{to} is in the output folder {out}, which holds only a dataset's files: name a file outside it"
             )));
         }
     }
@@ -62,7 +60,7 @@ pub fn folder(plan: &Plan, replaced: &[PathBuf]) -> Result<(), Refusal> {
         let identity = Identity::of(file);
         if let Some(at) = replaced.iter().find(|at| at.exists() && Identity::of(at).is(&identity)) {
             return Err(Refusal(format!(
-                "{} would be replaced, and the scene is read from it: name another folder",
+                "{} would be replaced, but the scene reads it: name another folder",
                 at.display()
             )));
         }

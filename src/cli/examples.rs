@@ -1,4 +1,4 @@
-//! Examples below each command's `--help`: lines that do what they say as they stand.
+//! Examples below each command's `--help`: each line works as written.
 
 /// `ratetable`.
 pub const PROGRAM: &str = "\

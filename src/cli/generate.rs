@@ -21,7 +21,7 @@ const MOST_RUNS: u64 = 1_000_000;
 pub struct Arguments {
     /// A TOML file or the name of a built-in scene
     scene: String,
-    /// The folder to make
+    /// The folder to create
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     #[arg(long, value_name = "FORMAT", help = formats_help(), value_delimiter = ',', default_value = "csv", value_parser = format)]
@@ -29,36 +29,36 @@ pub struct Arguments {
     /// Override one key of the scene, such as gyro.rate='8 kHz'
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Make this many runs of the scene, each in a folder of its own, seeded by its index and with its part of [sweep]
-    /// (default where [sweep] has lists: every combination once)
+    /// Make this many runs of the scene, each in its own folder, seeded by its index and with its values from [sweep]
+    /// (default if [sweep] has lists: every combination once)
     #[arg(long, value_name = "N", value_parser = options::runs)]
     runs: Option<u64>,
-    /// Make only the runs whose index leaves the remainder I when divided by N
+    /// Make only the runs whose index divided by N leaves the remainder I
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// Draw the sensors and the reference angles as SVG too
+    /// Also draw the sensors and the reference angles as SVG
     #[arg(long)]
     figures: bool,
-    /// Replace the folder if there is one
+    /// Replace the folder if it exists
     #[arg(long)]
     force: bool,
 }
 
 fn formats_help() -> String {
-    format!("In which formats, separated by commas: {}", list::formats::named())
+    format!("Formats, separated by commas: {}", list::formats::named())
 }
 
 fn format(name: &str) -> Result<&'static Format, String> {
     Format::from_name(name).ok_or_else(|| {
         if FEATURES.contains(&name) {
             return format!(
-                "`{name}` is not in this build: it brings heavy crates, so build with `--features {name}`"
+                "`{name}` is not in this build: it needs large dependencies; build with `--features {name}`"
             );
         }
         let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
         let near =
             nearest(name, names.iter().copied()).map_or(String::new(), |near| format!(", perhaps `{near}`"));
-        format!("`{name}` is no format of this version ({}){near}", names.join(", "))
+        format!("`{name}` is not a format of this version ({}){near}", names.join(", "))
     })
 }
 
@@ -97,12 +97,12 @@ pub fn generate(arguments: &Arguments) -> Result<Verdict, Refusal> {
     Ok(Verdict::Fine)
 }
 
-/// The scene as one of many runs, if there are to be several.
+/// The scene as one of many runs, if there are several.
 fn several(arguments: &Arguments) -> Result<Option<Runs>, Refusal> {
     let runs = Runs::load(&arguments.scene, &arguments.set)?;
     let asked = arguments.runs.is_some() || arguments.shard.is_some() || runs.keys().next().is_some();
     if asked && arguments.runs.is_none() && runs.combinations() == 1 {
-        return Err(Refusal("how many runs? say so, such as --runs 100".into()));
+        return Err(Refusal("say how many runs, such as --runs 100".into()));
     }
     Ok(asked.then_some(runs))
 }
@@ -113,7 +113,7 @@ fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal
     let mine = shard.count(runs);
     if mine > MOST_RUNS {
         return Err(Refusal(format!(
-            "--runs {runs} makes {mine} folders here, and {MOST_RUNS} is the most: make a share of them, such as --shard 1/{}, or write fewer",
+            "--runs {runs} makes {mine} folders here, above the limit of {MOST_RUNS}: make a share of them, such as --shard 1/{}, or fewer",
             runs.div_ceil(MOST_RUNS)
         )));
     }
@@ -136,8 +136,8 @@ fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal
     let Made { written, kept } = made?;
     let there = match kept {
         0 => String::new(),
-        1 => ", 1 was there already".to_string(),
-        kept => format!(", {kept} were there already"),
+        1 => ", 1 already existed".to_string(),
+        kept => format!(", {kept} already existed"),
     };
     let seconds = started.elapsed().as_secs_f64();
     tell(&format!(
@@ -149,7 +149,7 @@ fn generate_runs(arguments: &Arguments, scene: &Runs) -> Result<Verdict, Refusal
     Ok(Verdict::Fine)
 }
 
-/// Refuses what no disk and no patience would hold.
+/// Refuses what would be too large or too slow.
 pub fn affordable(plan: &Plan, runs: u64) -> Result<(), Refusal> {
     let absurd = Bounds::of(plan, plan.duration).times(runs).absurd();
     absurd.map_or(Ok(()), |why| Err(Refusal(format!("{}: {why}", plan.name))))

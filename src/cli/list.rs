@@ -1,4 +1,4 @@
-//! `ratetable list`: what there is, or one thing of it with all that is known of it.
+//! `ratetable list`: everything available, or one entry in full.
 
 mod fields;
 pub(super) mod formats;
@@ -16,36 +16,36 @@ use clap::ValueEnum;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Which list; all of them without it
+    /// Which list (default: all)
     what: Option<What>,
-    /// One of it, with everything that is known of it, such as `list parts MPU-9250` or `list keys gyro.bias`
+    /// One entry in full, such as `list parts MPU-9250` or `list keys gyro.bias`
     #[arg(requires = "what")]
     name: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum What {
-    /// Built-in scenes; one by name: its file, to copy
+    /// Built-in scenes; with a name, the scene's file, to copy
     Scenes,
-    /// Sensors known by their datasheet; one by name: its data, each value with its unit and source
+    /// Sensors with datasheet values; with a name, each value with its unit and source
     Parts,
     /// Kinds of motion and their keys
     Motions,
-    /// Ways to step attitude, for `[reference]` and `study`
+    /// Attitude integration methods, for `[reference]` and `study`
     Methods,
-    /// Every key of a scene file: what it takes, its unit, range and default
+    /// Every key of a scene file: its values, unit, range and default
     Keys,
-    /// What packets look like
+    /// Packet protocols
     Protocols,
-    /// Flight controllers by name, and what each name stands for
+    /// Flight controllers by name, with the settings of each
     Targets,
     /// Where packets go
     Links,
-    /// Formats of datasets, and those that this build lacks
+    /// Dataset formats, including those not in this build
     Formats,
-    /// What `--limit` may name in the report of each command, with its unit
+    /// Report fields that `--limit` accepts for each command, with units
     Fields,
-    /// Kinds of files that `score` and the motion `replay` read
+    /// Kinds of file that `score` and the motion `replay` read
     Logs,
     /// Serial ports of this machine
     Ports,
@@ -53,15 +53,15 @@ enum What {
 
 /// One thing of a list.
 pub struct Item {
-    /// What it answers to; the first is what it is called.
+    /// Its names; the first is the main one.
     names: Vec<String>,
-    /// What is said of it where the whole list is asked for.
+    /// Its text in the whole list.
     brief: Brief,
-    /// What is said of it where it alone is.
+    /// Its text alone.
     whole: String,
 }
 
-/// What is said of a thing among others.
+/// A thing's text in a list.
 pub enum Brief {
     /// A row of the list's table.
     Row(Vec<String>),
@@ -144,7 +144,7 @@ fn name_of(what: What) -> String {
     what.to_possible_value().map_or(String::new(), |value| value.get_name().to_string())
 }
 
-/// All that is known of one thing, whatever the case its name is written in.
+/// Everything known of one thing; names ignore case.
 fn one(what: What, name: &str) -> Result<String, Refusal> {
     let list = list_of(what)?;
     let named = |item: &&Item| item.names.iter().any(|known| known.eq_ignore_ascii_case(name));
@@ -161,10 +161,10 @@ fn one(what: What, name: &str) -> Result<String, Refusal> {
         n if n > MOST_NAMES => format!("`ratetable list {}` shows them", name_of(what)),
         _ => format!("there are {}", firsts.join(", ")),
     };
-    Err(Refusal(format!("`{name}` is none of the {}: {there}{near}", name_of(what))))
+    Err(Refusal(format!("`{name}` is not one of the {}: {there}{near}", name_of(what))))
 }
 
-/// So many names are told in a message at the most.
+/// A message lists at most this many names.
 const MOST_NAMES: usize = 40;
 
 fn list_of(what: What) -> Result<List, Refusal> {
@@ -209,7 +209,7 @@ fn scenes() -> List {
     }
 }
 
-/// Flight controllers, each with what its name stands for.
+/// Flight controllers, each with what its name sets.
 fn targets() -> List {
     List::of_lines(TARGETS.iter().map(|target: &Target| {
         let mut lines = format!("{}: {}\n", target.name, target.about);
@@ -243,7 +243,7 @@ fn ports() -> List {
     let mut list = List::of_rows(&["port", "product", "manufacturer", "try"], rows.collect());
     if list.items.is_empty() {
         list.below =
-            "no serial port was found; a pty needs none: ratetable run SCENE --to mpu@pty\n".to_string();
+            "no serial port found; a pty needs no hardware: ratetable run SCENE --to mpu@pty\n".to_string();
     }
     list
 }

@@ -39,7 +39,7 @@ pub fn speed(text: &str) -> Result<Speed, String> {
         _ if text == "max" => Ok(Speed::Max),
         Ok(times) if SPEEDS.contains(&times) => Ok(Speed::Times(times)),
         _ => Err(format!(
-            "write 1 for real time, another number from {:e} to {:e} for so many scene seconds a second, or max",
+            "write 1 for real time, a number from {:e} to {:e} for that many scene seconds per second, or max",
             SPEEDS.start(),
             SPEEDS.end()
         )),
@@ -54,7 +54,9 @@ pub fn runs(text: &str) -> Result<u64, String> {
         let value = text.parse::<f64>().ok()?;
         ((1.0..=MOST).contains(&value) && value.fract() == 0.0).then_some(value as u64)
     });
-    whole.filter(|runs| *runs > 0).ok_or_else(|| "write a whole number from 1 on, such as 1000 or 1e6".into())
+    whole
+        .filter(|runs| *runs > 0)
+        .ok_or_else(|| "write a whole number of 1 or more, such as 1000 or 1e6".into())
 }
 
 /// `--rest`, `--settle`: a time, or `0`.
@@ -67,7 +69,7 @@ pub fn from_zero(text: &str) -> Result<SimTime, String> {
 pub enum Alignment {
     /// Nothing
     None,
-    /// One constant heading, which an estimate without a magnetometer cannot know
+    /// One constant heading, which is arbitrary without a magnetometer
     Heading,
     /// One constant rotation of the world
     World,
@@ -100,7 +102,7 @@ pub fn delay(text: &str) -> Result<Delay, String> {
         "fit" => Ok(Delay::Fit),
         _ => match quantity::duration_ns(text, Sign::Any) {
             Ok(ns) => Ok(Delay::Given(ns)),
-            Err(error) => Err(format!("{error}; or write 0 to leave it in, or fit to find it")),
+            Err(error) => Err(format!("{error}; or write 0 to keep it, or fit to estimate it")),
         },
     }
 }
@@ -116,7 +118,7 @@ pub fn processor(text: &str) -> Result<usize, String> {
     let found = text.parse().ok().filter(|cpu| allowed.contains(cpu));
     found.ok_or_else(|| {
         let names: Vec<_> = allowed.iter().map(usize::to_string).collect();
-        format!("this process may use the processors {}", names.join(", "))
+        format!("this process can use only processors {}", names.join(", "))
     })
 }
 

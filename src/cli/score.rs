@@ -24,27 +24,27 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset's folder, or a file of time and attitude as an estimate's
+    /// A dataset folder, or a file of time and attitude like an estimate's
     truth: PathBuf,
     /// Files of time and attitude (a table with a header, a TUM trajectory, a PX4 ULog), or filters to run on the
-    /// dataset: vqf, fusion, madgwick, mahony, and with -6d without the magnetometer
+    /// dataset: vqf, fusion, madgwick, mahony, each also with -6d (no magnetometer)
     #[arg(required = true)]
     estimate: Vec<String>,
-    /// What to take out of each estimate before it is judged
+    /// What to remove from each estimate before scoring
     #[arg(long, value_enum, default_value_t = Alignment::None)]
     align: Alignment,
-    /// The delay on the dataset's own clock: 0 leaves it in, fit finds it, or a time such as 12ms; rows and charts are
-    /// without it, and figures with and without it are always told. It also says that the times are the dataset's
+    /// The delay on the dataset's own clock: 0 keeps it, fit estimates it, or a time such as 12ms; rows and charts are
+    /// without it, and figures with and without it are always given. It also says that the times are the dataset's
     #[arg(long, value_name = "0|fit|TIME", allow_hyphen_values = true, value_parser = options::delay)]
     delay: Option<Delay>,
-    /// Whose clock the estimates' times are of: the truth's, or another whose offset is found by the motion
-    /// [default: what the motion, or the times themselves, leave no doubt about]
+    /// Which clock the estimates' times use: the truth's, or another, whose offset is found from the motion
+    /// [default: found from the motion or from the times themselves]
     #[arg(long, value_enum, conflicts_with = "delay")]
     clock: Option<ClockOf>,
-    /// The unit of times whose column does not say it
+    /// The unit of times whose column has none
     #[arg(long, value_name = "s|ms|us|ns", value_parser = |text: &str| text.parse::<TimeUnit>())]
     time_unit: Option<TimeUnit>,
-    /// Leave out so much from the truth's start on
+    /// Leave out this much time from the truth's start
     #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::from_zero)]
     settle: SimTime,
     /// The axes of tables and TUM trajectories: ned-frd or enu-flu [default: the dataset's, else ned-frd]
@@ -52,8 +52,8 @@ pub struct Arguments {
     axes: Option<Axes>,
     #[command(flatten)]
     columns: columns::Columns,
-    /// Fail (exit 1) unless a field of the report keeps to this, such as 'estimates.vqf.rms_deg<1'; a field of an
-    /// estimate alone, such as 'rms_deg<1', means each of them
+    /// Fail (exit 1) unless a report field meets this limit, such as 'estimates.vqf.rms_deg<1'; a field of an
+    /// estimate alone, such as 'rms_deg<1', applies to every estimate
     #[arg(long = "limit", value_name = "FIELD<VALUE", value_parser = options::limit)]
     limit: Vec<Limit>,
     /// Write report, errors and charts into this folder
@@ -157,7 +157,7 @@ fn one(
         }
         Err(Unjudged::NoTruth) => {
             return Err(Refusal(format!(
-                "{}: none of its {count} attitudes is at a time at which the truth is known ({} to {}{})",
+                "{}: none of its {count} attitudes is at a time that the truth covers ({} to {}{})",
                 scored.source,
                 truth.track.first(),
                 truth.track.last(),

@@ -1,4 +1,4 @@
-//! `ratetable completions` and `ratetable man`: what shells and `man` want of the command line, out of its definition.
+//! `ratetable completions` and `ratetable man`: shell completions and manual pages from the command line's definition.
 
 use super::{Refusal, Verdict, say, tell};
 use crate::dataset::{self, Holds};
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct CompletionsArguments {
-    /// For which shell
+    /// The shell
     shell: Shell,
 }
 

@@ -18,14 +18,14 @@ use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// accuracy, stability, cost, allan or all, which is the default; or the scene at once
+    /// accuracy, stability, cost, allan or all (default); or the scene directly
     study: Option<String>,
-    /// A TOML file or the name of a built-in scene: its motion joins the built-in ones, and its samples are what costs
+    /// A TOML file or the name of a built-in scene: adds its motion to the built-in ones, and measures its samples' cost
     scene: Option<String>,
     /// Write the numbers as CSV and the charts as SVG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Motions A to D at 100 Hz and 1 kHz alone, a tenth of the steps of drift, and few rounds of costs
+    /// Only motions A to D at 100 Hz and 1 kHz, a tenth of the drift steps, and few cost rounds
     #[arg(long)]
     quick: bool,
     /// Print every row as JSON on standard output
@@ -40,13 +40,13 @@ pub struct Arguments {
 enum What {
     /// Error and cost of each method on each motion
     Accuracy,
-    /// What breaks methods, and which it breaks
+    /// What makes methods fail, and which ones
     Stability,
-    /// What a scene's samples cost as its error terms are added
+    /// The cost of a scene's samples as error terms are added
     Cost,
-    /// The Allan deviation of a scene's sensors beside theory
+    /// The Allan deviation of a scene's sensors against theory
     Allan,
-    /// Each of them
+    /// All of them
     All,
 }
 
@@ -112,7 +112,7 @@ fn cases(plan: Option<&Plan>, quick: bool) -> Result<Vec<Case<'_>>, Refusal> {
         let name = plan.name.clone();
         if cases.iter().any(|case| case.name == name) {
             return Err(Refusal(format!(
-                "the scene is called `{name}`, as one of the built-in motions is: give it another `name`"
+                "the scene's name `{name}` is also a built-in motion's: give it another `name`"
             )));
         }
         let rates = if quick { motions::QUICK_RATES.to_vec() } else { motions::RATES.to_vec() };
@@ -148,10 +148,10 @@ fn asked(arguments: &Arguments) -> Result<(What, Option<&str>), Refusal> {
         None => format!("`{word}` is neither a study ({names}) nor a scene, built in or a file{near}"),
         Some(scene) if is_scene => {
             format!(
-                "`{word}` is a scene, and so `{scene}` is one too many: write a study ({names}), then one scene"
+                "`{word}` is a scene, so `{scene}` is a second one: write a study ({names}), then one scene"
             )
         }
-        Some(_) => format!("`{word}` is no study ({names}){near}"),
+        Some(_) => format!("`{word}` is not a study ({names}){near}"),
     }))
 }
 

@@ -1,4 +1,4 @@
-//! How wide what is printed may be.
+//! The width of printed text.
 
 use crate::report::{table_within, wrap};
 use std::io::IsTerminal;

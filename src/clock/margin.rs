@@ -1,4 +1,4 @@
-//! How long before its time a wait stops sleeping and spins: learnt from the machine's own wake-ups.
+//! How long before its deadline a wait stops sleeping and spins: learnt from the machine's own wake-ups.
 
 /// What the margin follows.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Waits that end on time: an absolute sleep to shortly before, then a short bounded spin.
+//! Waits that end on time: an absolute sleep until shortly before, then a short bounded spin.
 
 use super::{Clock, Margin, Policy};
 

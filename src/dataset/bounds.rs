@@ -16,7 +16,7 @@ const CELL: u64 = 25;
 pub struct Bounds {
     /// Samples made, of all sensors: exact where no fault withholds some.
     pub samples: u64,
-    /// Bytes of the tables of a dataset in CSV: at the most.
+    /// Bytes of a dataset's CSV tables: an upper bound.
     pub bytes: u64,
     /// Seconds of scene.
     pub seconds: f64,
@@ -59,7 +59,7 @@ impl Bounds {
         let Bounds { samples, bytes, seconds } = self;
         (*samples > MOST_SAMPLES).then(|| {
             format!(
-                "{samples} samples in {seconds:.3e} s of scene, up to {:.0} TB in CSV, and {MOST_SAMPLES} samples are the most: a shorter `duration`, lower rates or fewer runs",
+                "{samples} samples in {seconds:.3e} s of scene, up to {:.0} TB in CSV, above the limit of {MOST_SAMPLES} samples: use a shorter `duration`, lower rates or fewer runs",
                 *bytes as f64 / 1e12
             )
         })

@@ -8,7 +8,7 @@ use crate::scene::Plan;
 use crate::time::SimTime;
 use std::io::Write;
 
-pub(super) static FORMAT: Format = Format { name: "csv", about: "one text file a table", open };
+pub(super) static FORMAT: Format = Format { name: "csv", about: "one text file per table", open };
 
 fn open(_: &Plan, tables: &[Table], folder: &Folder) -> Result<Box<dyn Writer>, DatasetError> {
     let mut files = Vec::with_capacity(tables.len());

@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum DatasetError {
     /// The output folder holds something.
-    #[error("{} already holds files; name another folder, or replace what is in it with --force", path.display())]
+    #[error("{} already holds files; name another folder, or replace its contents with --force", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
     },
     /// Files that would be replaced and are not ours.
-    #[error("{} has {} that would be replaced and that no manifest of ours lists: move {} away, or name another folder", path.display(), listed(names), if names.len() == 1 { "it" } else { "them" })]
+    #[error("{} has {}, which would be replaced but is in no ratetable manifest: move {} away, or name another folder", path.display(), listed(names), if names.len() == 1 { "it" } else { "them" })]
     NotOurs {
         /// The folder.
         path: PathBuf,
@@ -36,19 +36,19 @@ pub enum DatasetError {
         wanted: &'static str,
     },
     /// Another process is writing into the folder.
-    #[error("{} is being written by another process: wait until it has ended, or name another folder", path.display())]
+    #[error("{} is being written by another process: wait for it to end, or name another folder", path.display())]
     Busy {
         /// The folder.
         path: PathBuf,
     },
     /// The folder came into being while its contents were made.
-    #[error("{} has been made by another process meanwhile: that one is left as it is, and this one is not kept; name another folder", path.display())]
+    #[error("{} was made by another process in the meantime: that one stays and this one is discarded; name another folder", path.display())]
     Appeared {
         /// The folder.
         path: PathBuf,
     },
     /// The output path is something else.
-    #[error("{} is not a folder; the output is a folder, so name a new one", path.display())]
+    #[error("{} is not a folder; name a new folder", path.display())]
     NotAFolder {
         /// The path.
         path: PathBuf,
@@ -60,13 +60,13 @@ pub enum DatasetError {
     #[error("reference.csv cannot be computed: {0}; choose another `method` in [reference]")]
     Reference(#[source] ReferenceError),
     /// `method = "auto"` found none.
-    #[error("reference.csv cannot be computed: {0}; `tolerance` in [reference] is what it goes by")]
+    #[error("reference.csv cannot be computed: {0}; see `tolerance` in [reference]")]
     Tolerance(#[source] ToleranceError),
     /// Asked to stop.
-    #[error("stopped before the dataset was complete; nothing was kept")]
+    #[error("stopped before the dataset was complete; nothing is kept")]
     Stopped,
     /// Asked to stop between runs.
-    #[error("stopped: {complete} of {of} runs are complete; the same command makes the others")]
+    #[error("stopped: {complete} of {of} runs are complete; run the same command again to make the others")]
     RunsStopped {
         /// Of them complete.
         complete: u64,

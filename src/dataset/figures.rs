@@ -17,7 +17,7 @@ const STRETCHES: i64 = 2000;
 /// One figure, against time in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What its file is to be called, without an ending.
+    /// Its file's name, without an extension.
     pub file_stem: &'static str,
     /// What it shows.
     pub title: &'static str,
@@ -35,7 +35,7 @@ pub struct Series {
     /// Such as `x`.
     pub label: Cow<'static, str>,
     /// Time in s and value in the figure's unit: every sample of a short scene, of a long one those that show. Where
-    /// samples are missing stands one that is no number.
+    /// samples are missing there is a NaN.
     pub points: Vec<(f64, f64)>,
     /// Whether it is free of errors.
     pub is_truth: bool,

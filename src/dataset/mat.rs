@@ -15,7 +15,7 @@ use std::path::Path;
 
 pub(super) static FORMAT: Format = Format {
     name: "mat",
-    about: "one MATLAB level 4 file a table, a vector a column: `load('gyro.mat').x_rad_s`",
+    about: "one MATLAB level 4 file per table, one vector per column: `load('gyro.mat').x_rad_s`",
     open,
 };
 
@@ -56,7 +56,7 @@ impl File {
 
     fn finish(mut self, rows: u64) -> Result<Written, DatasetError> {
         if rows > MOST_ROWS {
-            return Err(self.refuse(format!("{rows} rows are more than the {MOST_ROWS} that MATLAB reads at level 4: use parquet or npy, or a shorter scene")));
+            return Err(self.refuse(format!("{rows} rows exceed the {MOST_ROWS} that MATLAB reads at level 4: use parquet or npy, or a shorter scene")));
         }
         for (column, scratch) in self.columns.iter().zip(self.scratch) {
             self.sink.put(&header(&column.name, rows))?;
@@ -77,7 +77,7 @@ impl Writer for Mat {
         let file = &mut self.tables[table];
         if t.0 > LARGEST_NS {
             return Err(file.refuse(format!(
-                "t_ns = {} is beyond 2^53 and no double, all that level 4 has: use parquet or npy",
+                "t_ns = {} is beyond 2^53, and level 4 has only doubles: use parquet or npy",
                 t.0
             )));
         }

@@ -12,7 +12,7 @@ use crate::time::SimTime;
 
 pub(super) static FORMAT: Format = Format {
     name: "npy",
-    about: "one NumPy structured array a table: `np.load(\"gyro.npy\")[\"x_rad_s\"]`",
+    about: "one NumPy structured array per table: `np.load(\"gyro.npy\")[\"x_rad_s\"]`",
     open,
 };
 

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 pub(super) static FORMAT: Format = Format {
     name: "parquet",
-    about: "one Apache Parquet file a table, compressed: `pandas.read_parquet(\"gyro.parquet\")`",
+    about: "one compressed Apache Parquet file per table: `pandas.read_parquet(\"gyro.parquet\")`",
     open,
 };
 

@@ -49,7 +49,8 @@ pub fn truth(path: &Path) -> Result<Recorded, DatasetError> {
     while let Some((t, [w, x, y, z])) = columns.next()? {
         let q = DQuat::from_xyzw(x, y, z, w);
         if (q.length() - 1.0).abs() > 1e-3 {
-            let problem = format!("[{w}, {x}, {y}, {z}] has length {}, but a rotation's is 1", q.length());
+            let problem =
+                format!("[{w}, {x}, {y}, {z}] has length {}, but a rotation has length 1", q.length());
             return Err(columns.wrong("qw..qz", problem));
         }
         attitudes.push((t, axes.attitude_in(q)));
@@ -114,7 +115,7 @@ fn axes(file: &Path) -> Result<Axes, DatasetError> {
         _ => Path::new("."),
     };
     let manifest = folder.join("manifest.json");
-    std::fs::metadata(&manifest).map_err(DatasetError::io("tell the axes of the dataset from", &manifest))?;
+    std::fs::metadata(&manifest).map_err(DatasetError::io("find the dataset's axes in", &manifest))?;
     let json = listed::read_json(folder).unwrap_or_default();
     json.get("axes").and_then(|axes| Axes::from_name(axes.as_str()?)).ok_or_else(|| DatasetError::Content {
         place: manifest.display().to_string(),
@@ -170,18 +171,18 @@ impl<const N: usize> Columns<N> {
             row.ticks.filter(|ticks| ticks % TICKS == 0).and_then(|ticks| i64::try_from(ticks / TICKS).ok());
         let t = whole.map(SimTime).ok_or_else(|| {
             let text = self.table.cell(self.time());
-            self.wrong("t_ns", format!("`{text}` is no whole number of nanoseconds"))
+            self.wrong("t_ns", format!("`{text}` is not a whole number of nanoseconds"))
         })?;
         if let Some(last) = self.last.filter(|&last| t <= last) {
             return Err(
-                self.wrong("t_ns", format!("{} is not after {}, the time of the row before", t.0, last.0))
+                self.wrong("t_ns", format!("{} is not after {}, the time of the previous row", t.0, last.0))
             );
         }
         self.last = Some(t);
         if let Some(place) = row.values.iter().position(|value| value.is_nan()) {
             let column = self.wanted.columns[place];
             let (name, text) = (self.table.called(column), self.table.cell(column));
-            return Err(self.wrong(&name, format!("`{text}` is no number")));
+            return Err(self.wrong(&name, format!("`{text}` is not a number")));
         }
         Ok(Some((t, row.values)))
     }

@@ -119,7 +119,7 @@ fn reference_section(quality: &Quality) -> String {
         "## Reference
 
 `reference.csv` is attitude as a program without the truth would compute it: {how}.{why} It is normalised, in the same
-axes and conventions as `truth.csv`. **`truth.csv` is exact** and what estimates are to be judged by.
+axes and conventions as `truth.csv`. **`truth.csv` is exact**: judge estimates by it.
 
 Against the truth the reference is off by {:.3e}° RMS, {:.3e}° at most, {:.3e}° at the end; before normalising, its norm
 is off 1 by {norm_error:.3e} at the end.

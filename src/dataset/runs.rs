@@ -55,7 +55,7 @@ impl FromStr for Shard {
         match parts {
             Some((index, of)) if of > 0 && index <= of => Ok(Shard { index: index % of, of }),
             _ => Err(format!(
-                "`{text}` is no share: write I/N with I from 0 to N-1, or from 1 to N, such as 3/8"
+                "`{text}` is not a share: write I/N with I from 0 to N-1, or from 1 to N, such as 3/8"
             )),
         }
     }
@@ -71,7 +71,7 @@ pub struct RunOptions<'a> {
     pub force: bool,
     /// In which formats.
     pub formats: Vec<&'static Format>,
-    /// Makes files of a run's figures, where there are to be some.
+    /// Makes files of a run's figures, if requested.
     pub draw: Option<Draw<'a>>,
     /// How many at a time.
     pub threads: usize,
@@ -81,7 +81,7 @@ pub struct RunOptions<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// What became of the runs asked for.
+/// The outcome of the requested runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Made {
     /// Made now.

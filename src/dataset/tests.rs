@@ -454,7 +454,7 @@ fn what_cannot_be_read_is_placed() {
         (text.replacen("qx", "other", 1), "truth.csv:1: has no column `qx`"),
         (
             text.replacen(third, &third.replacen("1000000,1,", "1000000,one,", 1), 1),
-            "truth.csv:3, column qw: `one` is no number",
+            "truth.csv:3, column qw: `one` is not a number",
         ),
         (
             text.replacen(third, &third.replacen("1000000,1,", "1000000,2,", 1), 1),
@@ -464,7 +464,7 @@ fn what_cannot_be_read_is_placed() {
             text.replacen(third, &third.replacen("1000000,", "0,", 1), 1),
             "truth.csv:3, column t_ns: 0 is not after 0",
         ),
-        (text.replacen(third, &third.replacen("1000000,", "1.5,", 1), 1), "`1.5` is no whole number"),
+        (text.replacen(third, &third.replacen("1000000,", "1.5,", 1), 1), "`1.5` is not a whole number"),
         (text.replacen(third, "5,5", 1), "truth.csv:3: the row has 2 columns, the header 17"),
     ] {
         fs::write(&file, bad).unwrap();

@@ -13,7 +13,7 @@ use crate::time::SimTime;
 
 pub(super) static FORMAT: Format = Format {
     name: "tum",
-    about: "attitudes alone, as TUM trajectories with position 0, for evo: `evo_ape tum truth.tum estimate.tum --pose_relation angle_deg`",
+    about: "only attitudes, as TUM trajectories with position 0, for evo: `evo_ape tum truth.tum estimate.tum --pose_relation angle_deg`",
     open,
 };
 

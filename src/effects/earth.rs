@@ -18,7 +18,7 @@ const FIELD_RADIUS: f64 = 6_371_200.0;
 /// The free-air gradient of gravity, 1/s² (Heiskanen and Moritz, *Physical Geodesy*, 1967, sec. 2-9).
 const FREE_AIR: f64 = 3.086e-6;
 
-/// What is said of a size that is a bound.
+/// How a size that is a bound is described.
 const AT_MOST: &str = "at most";
 
 /// The Earth's rotation, which a gyroscope senses and this program's truth, relative to nav, has not:
@@ -166,7 +166,7 @@ fn of_place(
     if is_modelled(Some(there), used) {
         return Found::modelled(survey.largest_of_nav(there - default), "largest").by("earth.latitude");
     }
-    let note = format!("earth.{key} stands in for the {} {unit} of the place", number(there.length()));
+    let note = format!("earth.{key} replaces the {} {unit} of the place", number(there.length()));
     Found::left_out(survey.largest_of_nav(there - used), "largest").by(format!("earth.{key}")).noting(note)
 }
 

@@ -33,7 +33,7 @@ pub(super) fn measure(survey: &Survey<'_>, term: &str) -> Option<Found> {
     };
     let statistic = match survey.ticks {
         0..=TICKS => "largest, measured",
-        _ => "largest, measured over the first 20 000 samples or fewer",
+        _ => "largest, over at most the first 20 000 samples",
     };
     let size = DVec3::new(most(0), most(1), most(2));
     Some(Found { key: key(survey, term), ..Found::modelled(size, statistic) })

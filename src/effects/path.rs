@@ -93,7 +93,7 @@ pub(super) static LEVER_ARM: EffectKind = EffectKind {
             ARM * DVec3::from_array(squares.to_array().map(libm::sqrt))
         });
         let found = Found::left_out(size, "largest, for each cm").by("accel.lever_arm");
-        Some(found.noting("if the accelerometer sits off the point that moves"))
+        Some(found.noting("if the accelerometer is off the motion's reference point"))
     },
 };
 

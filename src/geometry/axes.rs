@@ -1,4 +1,4 @@
-//! How a scene and its dataset write vectors and attitudes: the only border between their axes and ours.
+//! How a scene and its dataset write vectors and attitudes: the only conversion between their axes and ours.
 
 use super::{Attitude, Body, Nav, Vector};
 use glam::{DQuat, DVec3};

@@ -1,4 +1,4 @@
-//! Where a link goes, as the user spells it.
+//! The address of a link, as the user writes it.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -31,7 +31,7 @@ pub enum Address {
     TcpIn(Endpoint),
     /// A TCP connection to a listening peer.
     TcpOut(Endpoint),
-    /// A UDP socket that answers whoever sends to it first.
+    /// A UDP socket that answers its first sender.
     UdpIn(Endpoint),
     /// A UDP socket that sends to one place.
     UdpOut(Endpoint),
@@ -171,9 +171,9 @@ mod tests {
     #[test]
     fn a_bad_spelling_is_told_what_would_be_right() {
         let cases: &[(&str, &[&str])] = &[
-            ("tcp:127.0.0.1:4560", &["two readings", "tcpin:127.0.0.1:4560", "tcpout:127.0.0.1:4560"]),
-            ("udp:", &["two readings", "udpin:", "udpout:"]),
-            ("udp", &["two readings", "udpin:", "udpout:"]),
+            ("tcp:127.0.0.1:4560", &["is ambiguous", "tcpin:127.0.0.1:4560", "tcpout:127.0.0.1:4560"]),
+            ("udp:", &["is ambiguous", "udpin:", "udpout:"]),
+            ("udp", &["is ambiguous", "udpin:", "udpout:"]),
             ("udp:9000", &["udpin:127.0.0.1:9000", "udpout:127.0.0.1:9000"]),
             ("udp://10.0.0.1:14550", &["udpin:10.0.0.1:14550", "udpout:10.0.0.1:14550"]),
             ("COM3", &["`COM3`", "/dev/ttyACM0", "list ports"]),

@@ -1,4 +1,4 @@
-//! Speeds of serial lines: what they carry, and how one is written after an address.
+//! Baud rates: their capacity, and how one is written after an address.
 
 use std::path::PathBuf;
 
@@ -29,7 +29,7 @@ const SPEEDS: std::ops::RangeInclusive<u32> = 50..=20_000_000;
 pub(super) fn speed(before: &str, digits: &str) -> Result<u32, Problem> {
     digits.parse().ok().filter(|baud| SPEEDS.contains(baud)).ok_or_else(|| {
         Problem::new(
-            format!("`{digits}` is no speed in baud ({} to {})", SPEEDS.start(), SPEEDS.end()),
+            format!("`{digits}` is not a baud rate ({} to {})", SPEEDS.start(), SPEEDS.end()),
             format!("say {before},{DEFAULT_BAUD}"),
         )
     })
@@ -48,7 +48,10 @@ pub(super) fn path_and_speed(
     if let Some((path, digits)) = rest.rsplit_once(':')
         && digits.parse::<u32>().is_ok_and(|number| number >= *SPEEDS.start())
     {
-        return Err(Problem::new("the speed stands after a comma", format!("say {scheme}{path},{digits}")));
+        return Err(Problem::new(
+            "write the baud rate after a comma",
+            format!("say {scheme}{path},{digits}"),
+        ));
     }
     Ok((problem::path(rest, example)?, None))
 }

@@ -1,4 +1,4 @@
-//! A host and a port, as users spell them.
+//! A host and a port, as users write them.
 
 use super::problem::Problem;
 use std::fmt;
@@ -51,14 +51,14 @@ pub(super) fn destination(name: &str, rest: Option<&str>) -> Result<Endpoint, Pr
     if is_number(rest) {
         return Err(Problem::new(
             format!("`{rest}` has no address"),
-            format!("say whom to reach: {name}:{LOOPBACK}:{rest}"),
+            format!("add an address: {name}:{LOOPBACK}:{rest}"),
         ));
     }
     let place = place(name, rest)?;
     if place.port == 0 {
         return Err(Problem::new(
-            "port 0 can only be listened on",
-            format!("a port from 1 to 65535: {name}:{}:14550", place.host),
+            "port 0 is only for listening",
+            format!("use a port from 1 to 65535: {name}:{}:14550", place.host),
         ));
     }
     Ok(place)
@@ -82,9 +82,9 @@ fn place(name: &str, rest: &str) -> Result<Endpoint, Problem> {
         let hint = if plain.contains('/') {
             format!("say {name}:{}:{digits}", plain.trim_start_matches('/'))
         } else {
-            format!("an IPv6 address stands in brackets: {name}:[::1]:14550")
+            format!("an IPv6 address needs brackets: {name}:[::1]:14550")
         };
-        return Err(Problem::new(format!("`{host}` is no address"), hint));
+        return Err(Problem::new(format!("`{host}` is not an address"), hint));
     }
     if plain.is_empty() {
         return Err(Problem::new("the address is missing", format!("say {example}")));
@@ -96,7 +96,7 @@ fn place(name: &str, rest: &str) -> Result<Endpoint, Problem> {
 fn port(name: &str, digits: &str) -> Result<u16, Problem> {
     digits.parse().map_err(|_| {
         Problem::new(
-            format!("`{digits}` is no port"),
+            format!("`{digits}` is not a port"),
             format!("a port is a number up to 65535, as in {name}:{LOOPBACK}:14550"),
         )
     })

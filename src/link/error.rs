@@ -1,4 +1,4 @@
-//! Why a link could not be had.
+//! Errors of opening and using a link.
 
 use std::io;
 use std::path::PathBuf;
@@ -53,7 +53,7 @@ pub enum LinkError {
         holders: Vec<Holder>,
     },
     /// The path is not a serial port.
-    #[error("link `{link}`: {} is not a serial port; to write a file say file:{0}", path.display())]
+    #[error("link `{link}`: {} is not a serial port; to write a file use file:{0}", path.display())]
     NotSerial {
         /// The link as spelled.
         link: String,
@@ -79,7 +79,7 @@ pub enum LinkError {
         what: String,
     },
     /// The host's name has no address.
-    #[error("link `{link}`: `{host}` has no address; give one in numbers, as in 127.0.0.1")]
+    #[error("link `{link}`: `{host}` has no address; give a numeric one, as in 127.0.0.1")]
     UnknownHost {
         /// The link as spelled.
         link: String,
@@ -127,7 +127,7 @@ pub enum LinkError {
 /// The ports there are, as the end of a sentence.
 fn present(ports: &[String]) -> String {
     match ports {
-        [] => "no serial port is present (`ratetable list ports` looks again)".to_owned(),
+        [] => "no serial port found (`ratetable list ports` looks again)".to_owned(),
         ports => format!("present: {}", ports.join(", ")),
     }
 }
@@ -135,7 +135,7 @@ fn present(ports: &[String]) -> String {
 /// Who holds a port, and how to make it let go.
 fn held_by(holders: &[Holder]) -> String {
     if holders.is_empty() {
-        return "another process holds it (root may see which: `sudo fuser -v` on it)".to_owned();
+        return "another process holds it (as root, find it with `sudo fuser -v` on it)".to_owned();
     }
     let named: Vec<_> = holders.iter().map(Holder::to_string).collect();
     let advice = holders.iter().filter_map(Holder::advice);

@@ -15,7 +15,7 @@ use super::{Kind, Link, LinkError};
 pub(super) const SCHEME: Scheme = Scheme {
     name: "file",
     spelling: "file:PATH",
-    about: "the same bytes to a file; what it held is replaced. `listen` reads it",
+    about: "the same bytes to a file, replacing its contents; `listen` reads it",
     parse,
 };
 

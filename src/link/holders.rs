@@ -1,4 +1,4 @@
-//! Who has a device open: what `fuser` does, for a message that names the culprit.
+//! Which process has a device open (as `fuser` does), for error messages.
 
 use std::fmt;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Whether two paths, or two links, are one thing: by what a path leads to, not by how it is spelled.
+//! Whether two paths, or two links, are the same: by what a path leads to, not by its spelling.
 
 use super::address::Address;
 use super::endpoint::Endpoint;

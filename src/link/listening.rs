@@ -1,4 +1,4 @@
-//! A link opened to hear what somebody sends, nothing being sent from here but, where asked for, a greeting.
+//! A link opened to receive; it sends nothing except an optional greeting.
 
 use super::address::Address;
 use super::{Kind, Link, LinkError};
@@ -36,8 +36,8 @@ impl Link {
                 let path = path.display().to_string();
                 Err(LinkError::Spelling {
                     spelled: address.to_string(),
-                    problem: "that is a file and no port".into(),
-                    right: format!("to read a recording say file:{path}"),
+                    problem: "that is a file, not a port".into(),
+                    right: format!("to read a recording write file:{path}"),
                 })
             }
             other => Link::open(other).await,

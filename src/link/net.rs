@@ -28,11 +28,11 @@ pub(super) async fn resolve_one(address: &Address, place: &Endpoint) -> Result<S
 /// Why a place cannot be listened on.
 pub(super) fn cannot_listen(address: &Address, place: &Endpoint, source: io::Error) -> LinkError {
     let why = match source.kind() {
-        io::ErrorKind::AddrInUse => "another program has that port; port 0 picks a free one",
+        io::ErrorKind::AddrInUse => "another program uses that port; port 0 picks a free one",
         io::ErrorKind::AddrNotAvailable => {
-            "this machine has no such address; 127.0.0.1 is this machine alone, 0.0.0.0 every network"
+            "this machine has no such address; 127.0.0.1 is this machine alone, 0.0.0.0 is every network"
         }
-        io::ErrorKind::PermissionDenied => "ports below 1024 belong to root; choose a higher one",
+        io::ErrorKind::PermissionDenied => "ports below 1024 need root; choose a higher one",
         _ => "the system refused",
     };
     LinkError::Listen { link: address.to_string(), place: place.to_string(), why, source }
@@ -42,12 +42,10 @@ pub(super) fn cannot_listen(address: &Address, place: &Endpoint, source: io::Err
 pub(super) fn cannot_reach(address: &Address, place: &Endpoint, source: io::Error) -> LinkError {
     let why = match source.kind() {
         io::ErrorKind::ConnectionRefused => {
-            "nobody listens there; start the other side first, or wait for it with tcpin"
+            "nothing listens there; start the other side first, or wait for it with tcpin"
         }
-        io::ErrorKind::TimedOut => "no answer; is the address right, and no firewall between?",
-        io::ErrorKind::HostUnreachable | io::ErrorKind::NetworkUnreachable => {
-            "there is no way to that address from here"
-        }
+        io::ErrorKind::TimedOut => "no answer; check the address and any firewall",
+        io::ErrorKind::HostUnreachable | io::ErrorKind::NetworkUnreachable => "no route to that address",
         _ => "the system refused",
     };
     LinkError::Refused { link: address.to_string(), place: place.to_string(), why, source }

@@ -1,4 +1,4 @@
-//! The plug of a serial port, which may be pulled out and put in again while packets are sent.
+//! The plug of a serial port, which may be unplugged and reconnected while packets are sent.
 //!
 //! Everybody writes to one descriptor for as long as the link lives. What is behind it changes: a port that is
 //! gone is let go at once (while it is held, the system gives the returning device another name), and the same

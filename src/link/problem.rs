@@ -1,4 +1,4 @@
-//! What is wrong with the spelling of an address.
+//! Errors in the spelling of an address.
 
 /// What is wrong with a spelling, and what would be right.
 #[derive(Debug)]
@@ -16,7 +16,7 @@ impl Problem {
 /// A path that must not be empty.
 pub(super) fn path(rest: &str, example: &str) -> Result<std::path::PathBuf, Problem> {
     if rest.is_empty() {
-        Err(Problem::new("the path is missing", format!("say where: {example}")))
+        Err(Problem::new("the path is missing", format!("add it: {example}")))
     } else {
         Ok(rest.into())
     }

@@ -33,7 +33,7 @@ use crate::os::{self, Readable};
 pub(super) const SCHEME: Scheme = Scheme {
     name: "pty",
     spelling: "pty[:PATH][,BAUD]",
-    about: "a new pseudo terminal, published as a symbolic link at PATH; starts when a reader opens it; with BAUD it takes the time of a UART",
+    about: "a new pseudo terminal, published as a symbolic link at PATH; starts when a reader opens it; with BAUD it has the timing of a UART",
     parse,
 };
 

@@ -1,4 +1,4 @@
-//! The kinds of link there are, as a table: adding a kind is one file and one line here.
+//! The table of link kinds: adding a kind is one file and one line here.
 
 use super::address::Address;
 use super::endpoint::{LOOPBACK, is_number};
@@ -81,10 +81,7 @@ fn unknown(name: &str, rest: Option<&str>) -> Problem {
     }
     if lower.starts_with("tty") && lower != "tty" || lower.starts_with("dev/") {
         let path = name.strip_prefix("dev/").unwrap_or(name);
-        return Problem::new(
-            "a serial port is given by its whole path",
-            format!("did you mean /dev/{path}?"),
-        );
+        return Problem::new("a serial port needs its full path", format!("did you mean /dev/{path}?"));
     }
     let what = match name {
         "" => "it is empty".to_owned(),
@@ -108,7 +105,7 @@ fn two_readings(name: &str, rest: Option<&str>) -> Problem {
         _ => ("waits there for a first datagram", "sends to it"),
     };
     Problem::new(
-        format!("`{name}` has two readings"),
+        format!("`{name}` is ambiguous"),
         format!("{name}in:{place} {inward}, {name}out:{place} {outward}"),
     )
 }

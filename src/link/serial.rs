@@ -31,7 +31,7 @@ use crate::os;
 pub(super) const SCHEME: Scheme = Scheme {
     name: "serial",
     spelling: "/dev/ttyACM0[,BAUD]",
-    about: "a serial port, 8N1, 921600 baud where none is given; also serial:PATH[,BAUD]",
+    about: "a serial port, 8N1, 921600 baud by default; also serial:PATH[,BAUD]",
     parse: |rest| parse(rest.unwrap_or_default()),
 };
 
@@ -135,9 +135,8 @@ fn notices(path: &Path, baud: u32, port: &OwnedFd, stream: &SerialStream) -> Vec
         Ok(()) => {}
         // Most drivers have no such setting because they never hold anything back.
         Err(error) if error.kind() == io::ErrorKind::Unsupported => {}
-        Err(error) => notices.push(format!(
-            "low latency could not be set on {device}: {error}; answers may come up to 16 ms late"
-        )),
+        Err(error) => notices
+            .push(format!("cannot set low latency on {device}: {error}; replies may be up to 16 ms late")),
     }
     if let Some((timer, milliseconds)) = latency_timer(Path::new(TERMINALS), path)
         && milliseconds > 1
@@ -243,10 +242,9 @@ fn remedy(path: &Path) -> String {
         .and_then(|device| group_name(&fs::read_to_string("/etc/group").ok()?, device.gid()));
     let rule = "a udev rule with MODE=\"0666\" also does";
     match group.as_deref() {
-        None | Some("root") => format!(
-            "it belongs to no group that you could join; {}",
-            rule.replace("also does", "would open it")
-        ),
+        None | Some("root") => {
+            format!("no group that you can join owns it; {}", rule.replace("also does", "would open it"))
+        }
         Some(group) => format!(
             "it belongs to the group {group}: `sudo usermod -aG {group} $USER`, then log in again; {rule}"
         ),

@@ -1,4 +1,4 @@
-//! One kind of link as users spell it.
+//! One kind of link as users write it.
 
 use super::address::Address;
 use super::problem::Problem;

@@ -23,7 +23,7 @@ pub(super) const SCHEME: Scheme =
 fn parse(rest: Option<&str>) -> Result<Address, Problem> {
     match rest {
         None => Ok(Address::Stdout),
-        Some(_) => Err(Problem::new("standard output takes no path", "say - alone, or file:PATH")),
+        Some(_) => Err(Problem::new("standard output takes no path", "write - alone, or file:PATH")),
     }
 }
 

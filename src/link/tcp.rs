@@ -1,4 +1,4 @@
-//! A TCP connection to one peer, waited for (`tcpin`) or made (`tcpout`).
+//! A TCP connection to one peer, accepted (`tcpin`) or opened (`tcpout`).
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpStream};
@@ -24,7 +24,7 @@ use crate::os;
 pub(super) const SCHEME_IN: Scheme = Scheme {
     name: "tcpin",
     spelling: "tcpin:[ADDR:]PORT",
-    about: "waits for one TCP peer and turns others away; on this machine alone where no ADDR is given",
+    about: "waits for one TCP peer and refuses others; listens only on this machine unless ADDR is given",
     parse: parse_in,
 };
 

@@ -420,11 +420,11 @@ async fn a_place_that_cannot_be_reached_or_listened_on_is_named() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let place = listener.local_addr().unwrap();
     let text = refusal(&format!("tcpin:{place}")).await;
-    assert!(text.contains("another program has that port"), "{text}");
+    assert!(text.contains("another program uses that port"), "{text}");
     assert!(text.contains(&place.to_string()), "{text}");
     drop(listener);
     let text = refusal(&format!("tcpout:{place}")).await;
-    assert!(text.contains("nobody listens there"), "{text}");
+    assert!(text.contains("nothing listens there"), "{text}");
     assert!(text.contains(&format!("`tcpout:{place}`")), "{text}");
     let text = refusal("udpin:192.0.2.1:5000").await;
     assert!(text.contains("no such address"), "{text}");

@@ -95,7 +95,7 @@ impl Uart {
     pub(super) fn notice(&self, name: &str) -> String {
         let baud = self.line.baud;
         format!(
-            "{name} takes the time of a UART at {baud} baud: {} bytes/s (8N1) from a transmit buffer of {BUFFER} bytes",
+            "{name} has the timing of a UART at {baud} baud: {} bytes/s (8N1) from a transmit buffer of {BUFFER} bytes",
             super::baud::bytes_per_second(baud)
         )
     }

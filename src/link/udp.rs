@@ -1,6 +1,6 @@
-//! UDP datagrams, a packet each, to whoever sent first (`udpin`) or to one place (`udpout`).
+//! UDP datagrams, one per packet, to the first sender (`udpin`) or to one address (`udpout`).
 //!
-//! Nobody can tell whether a datagram arrived: the link is never `Gone` because nobody listens.
+//! UDP does not report whether a datagram arrived, so a missing listener never makes the link `Gone`.
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -22,7 +22,7 @@ use super::{Kind, Link, LinkError};
 pub(super) const SCHEME_IN: Scheme = Scheme {
     name: "udpin",
     spelling: "udpin:[ADDR:]PORT",
-    about: "waits for a first datagram and answers its sender; on this machine alone where no ADDR is given",
+    about: "waits for a first datagram and answers its sender; listens only on this machine unless ADDR is given",
     parse: parse_in,
 };
 
@@ -30,7 +30,7 @@ pub(super) const SCHEME_IN: Scheme = Scheme {
 pub(super) const SCHEME_OUT: Scheme = Scheme {
     name: "udpout",
     spelling: "udpout:ADDR:PORT",
-    about: "sends UDP datagrams to one place, a packet each",
+    about: "sends UDP datagrams to one address, one packet each",
     parse: parse_out,
 };
 

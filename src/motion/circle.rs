@@ -33,7 +33,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             name: "entry",
             takes: Takes::Duration,
             default: Some("2 s"),
-            about: "how long rolling in takes, and rolling out",
+            about: "how long it takes to roll in, and to roll out",
         },
     ],
     has_length: false,
@@ -67,8 +67,10 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
         ));
     }
     if entry + entry > context.duration {
-        let message =
-            format!("rolling in and out over {entry} each does not fit in the motion's {}", context.duration);
+        let message = format!(
+            "rolling in and out takes {entry} each, which does not fit in the motion's {}",
+            context.duration
+        );
         return Err(KeyError::new("entry", message));
     }
     Ok(Box::new(Circle { bank, speed, entry, duration: context.duration, gravity: context.gravity }))

@@ -14,14 +14,14 @@ use std::f64::consts::TAU;
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "cone",
-    about: "coning: the x axis goes round a cone of a half-angle at a frequency",
+    about: "coning: the x axis moves around a cone with a half-angle at a frequency",
     keys: &[
         Key { name: "half_angle", takes: Takes::Scalar(Kind::ANGLE), default: None, about: "of the cone" },
         Key {
             name: "frequency",
             takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::NonNegative)),
             default: None,
-            about: "turns round the cone a second",
+            about: "turns around the cone per second",
         },
     ],
     has_length: false,
@@ -76,7 +76,7 @@ fn other_cone(half_angle: f64) -> Option<String> {
     // Beyond rounding: 180 deg itself is a cone.
     (given > 180.0 + 1e-9).then(|| {
         format!(
-            "a `cone` with a half_angle of {} deg is one of {} deg: a half-angle is from 0 to 180 deg",
+            "a `cone` with a half_angle of {} deg equals one of {} deg: use a half-angle from 0 to 180 deg",
             tidy(given),
             tidy(same)
         )

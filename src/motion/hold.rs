@@ -6,7 +6,7 @@ use crate::geometry::{Attitude, Body, Vector};
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "hold",
-    about: "stands still at the attitude it finds",
+    about: "holds the current attitude",
     keys: &[],
     has_length: false,
     build: |_, _| Ok(Box::new(Hold)),

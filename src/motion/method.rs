@@ -261,10 +261,10 @@ pub enum Why {
     #[error("the attitude is not finite")]
     AttitudeNotFinite,
     /// The attitude to start from is the null quaternion.
-    #[error("the attitude is null")]
+    #[error("the attitude is zero")]
     AttitudeZero,
     /// The inputs are good, but the result is beyond the largest number of the precision.
-    #[error("the result is beyond the range of numbers")]
+    #[error("the result overflows")]
     Overflow,
 }
 

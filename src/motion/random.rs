@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "random",
-    about: "a random angular rate within a band, the same for the same seed",
+    about: "a random angular rate within a band, repeatable by seed",
     keys: &[
         Key {
             name: "amplitude",
@@ -29,7 +29,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             name: "bandwidth",
             takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive)),
             default: None,
-            about: "nothing in it is faster than this",
+            about: "the highest frequency in it",
         },
     ],
     has_length: false,
@@ -62,7 +62,7 @@ fn build(values: &Values, context: &Context) -> Built {
         Some(motion) => Ok(Box::new(motion)),
         None => Err(KeyError::new(
             "bandwidth",
-            "together with the duration it is beyond what can be solved exactly: shorten the motion or lower the bandwidth",
+            "with this duration it is too high to solve exactly: shorten the motion or lower the bandwidth",
         )),
     }
 }

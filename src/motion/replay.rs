@@ -31,43 +31,43 @@ pub(super) static KIND: MotionKind = MotionKind {
             name: "file",
             takes: Takes::File,
             default: None,
-            about: "the log: columns under a header, separated by commas, semicolons, tabs or spaces, or a TUM trajectory; lines with # are comments",
+            about: "the log: columns under a header, separated by commas, semicolons, tabs or spaces, or a TUM trajectory; lines that start with # are comments",
         },
         Key {
             name: "time",
             takes: Takes::Columns(Columns { count: 1, kind: Some(Kind::TIME) }),
             default: None,
-            about: "its column of time by name or by number from 1 (without this key t_ns, t_s, time, timestamp, …)",
+            about: "its time column by name or by number from 1 (default: t_ns, t_s, time, timestamp, …)",
         },
         Key {
             name: "rate",
             takes: Takes::Scalar(Kind::RATE),
             default: None,
-            about: "instead: how often a row comes, of a log without a column of time",
+            about: "or instead the row rate, for a log without a time column",
         },
         Key {
             name: "quaternion",
             takes: Takes::Columns(Columns { count: 4, kind: None }),
             default: None,
-            about: "its columns of attitude, w first, body to nav (without this key qw, qx, qy, qz, q_RS_w, …, q[0], …)",
+            about: "its attitude columns, w first, body to nav (default: qw, qx, qy, qz, q_RS_w, …, q[0], …)",
         },
         Key {
             name: "euler",
             takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGLE) }),
             default: None,
-            about: "instead: roll, pitch, yaw (without this key roll_rad, …, roll [deg], …)",
+            about: "or instead roll, pitch, yaw (default: roll_rad, …, roll [deg], …)",
         },
         Key {
             name: "angular_rate",
             takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGULAR_RATE) }),
             default: None,
-            about: "instead: about body x, y, z (without this key wx_rad_s, …, x_rad_s, …, w_RS_S_x [rad s^-1], …)",
+            about: "or instead angular rate about body x, y, z (default: wx_rad_s, …, x_rad_s, …, w_RS_S_x [rad s^-1], …)",
         },
         Key {
             name: "align",
             takes: Takes::Word(&["none", "start"]),
             default: Some("none"),
-            about: "an attitude log as logged, or turned as a whole to begin where the motion finds the vehicle",
+            about: "whether an attitude log plays as logged, or is rotated as a whole to start at the vehicle's attitude",
         },
     ],
     has_length: true,
@@ -132,7 +132,7 @@ fn attitudes<const N: usize>(
         return Err(KeyError::new(
             "file",
             format!(
-                "{} begins {:.6} deg from where the motion finds the vehicle: begin with [start] quaternion = [{}, {}, {}, {}], or add align = \"start\" to turn the log",
+                "{} starts {:.6} deg from the vehicle's attitude: set [start] quaternion = [{}, {}, {}, {}], or add align = \"start\" to rotate the log",
                 log.place(0),
                 apart.to_degrees(),
                 q.w,
@@ -166,10 +166,10 @@ fn unit_quaternions<const N: usize>(
         let q = to_quat(*values);
         let length = q.length();
         if length < 1e-6 {
-            null.push(format!("{}: a quaternion of length {length} is no attitude", log.place(row)));
+            null.push(format!("{}: a quaternion of length {length} is not an attitude", log.place(row)));
         } else if (length - 1.0).abs() > 1e-3 {
             odd.push(format!(
-                "{}: the quaternion has the length {length:.4}, not 1; its direction is taken",
+                "{}: the quaternion has length {length:.4}, not 1; it is normalised",
                 log.place(row)
             ));
         }
@@ -194,7 +194,7 @@ fn rates(log: Log<3>, context: &Context, mut warnings: Vec<String>) -> Built {
         None => Err(KeyError::new(
             "file",
             format!(
-                "{place} and on: this log is longer or turns faster than can be solved exactly (four million steps): cut it into several"
+                "{place} and on: this log is too long or turns too fast to solve exactly (four million steps): cut it into several"
             ),
         )),
     }

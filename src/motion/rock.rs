@@ -14,13 +14,13 @@ use std::f64::consts::TAU;
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "rock",
-    about: "rocks to and fro: a sine of angular rate about one body axis",
+    about: "rocks back and forth: a sine of angular rate about one body axis",
     keys: &[
         Key {
             name: "axis",
             takes: Takes::Word(&["roll", "pitch", "yaw"]),
             default: Some("roll"),
-            about: "the body axis it turns about: x, y or z",
+            about: "the body axis to turn about: x, y or z",
         },
         Key {
             name: "amplitude",
@@ -32,7 +32,7 @@ pub(super) static KIND: MotionKind = MotionKind {
             name: "frequency",
             takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive)),
             default: None,
-            about: "full swings a second",
+            about: "full swings per second",
         },
         Key {
             name: "phase",

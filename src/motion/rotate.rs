@@ -24,19 +24,19 @@ pub(super) static KIND: MotionKind = MotionKind {
             name: "roll",
             takes: Takes::Scalar(Kind::ANGULAR_RATE),
             default: None,
-            about: "about the body's x alone",
+            about: "about the body's x only",
         },
         Key {
             name: "pitch",
             takes: Takes::Scalar(Kind::ANGULAR_RATE),
             default: None,
-            about: "about the body's y alone",
+            about: "about the body's y only",
         },
         Key {
             name: "yaw",
             takes: Takes::Scalar(Kind::ANGULAR_RATE),
             default: None,
-            about: "about the body's z alone",
+            about: "about the body's z only",
         },
     ],
     has_length: false,
@@ -68,7 +68,7 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
         )),
         (_, [.., (_, key)]) => Err(KeyError::new(
             key,
-            "`rotate` takes one of `angular_rate`, `roll`, `pitch` and `yaw`; for several axes at once write them as `angular_rate`",
+            "`rotate` takes one of `angular_rate`, `roll`, `pitch` and `yaw`; for several axes at once use `angular_rate`",
         )),
     }
 }

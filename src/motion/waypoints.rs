@@ -55,11 +55,11 @@ fn build(values: &Values, context: &Context) -> Built {
         return Err(KeyError::new("keys", message));
     }
     if let Some(pair) = keys.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
-        let message = format!("{} comes after {}: write them in order of time", pair[1].0, pair[0].0);
+        let message = format!("{} comes after {}: write them in time order", pair[1].0, pair[0].0);
         return Err(KeyError::new("keys", message));
     }
     if keys[0].0 == SimTime::ZERO && keys[0].1.angle_to(context.start) > AGREE {
-        let message = "the one at 0 s is not the attitude at which the motion finds the vehicle: leave it out, or write a key of its own for going there";
+        let message = "the one at 0 s is not the vehicle's attitude when the motion starts: leave it out, or add a key for the turn to it";
         return Err(KeyError::new("keys", message));
     }
     Ok(Box::new(Waypoints::new(context.start, keys)))

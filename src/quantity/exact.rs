@@ -24,9 +24,9 @@ pub fn rate(text: &str) -> Result<(u64, u64), QuantityError> {
         let period = quantity.notes.exact.filter(|_| quantity.dimension == Kind::TIME.dimensions()[0]);
         let (numerator, denominator) = period.and_then(Ratio::inverse)?.terms();
         Some(if denominator == 1 {
-            format!("is a time, but a rate is needed: write \"{numerator} Hz\"")
+            format!("is a time, but a rate is required: write \"{numerator} Hz\"")
         } else {
-            format!("is a time, but a rate is needed: write \"{numerator}/{denominator} Hz\"")
+            format!("is a time, but a rate is required: write \"{numerator}/{denominator} Hz\"")
         })
     })?;
     let value = kind.one_of(&quantity)?;
@@ -37,7 +37,7 @@ pub fn rate(text: &str) -> Result<(u64, u64), QuantityError> {
     let too_fine = "has too many digits for a rate (nine decimals at most): write a fraction, \
                     such as \"400/3 Hz\"";
     if value > whole(HIGHEST) {
-        return refuse("is above 1 MHz, the highest rate there is");
+        return refuse("is above 1 MHz, the highest rate");
     }
     match quantity.notes.exact.map(Ratio::terms) {
         Some((numerator, denominator)) if denominator <= FINEST => Ok((numerator as u64, denominator as u64)),
@@ -65,7 +65,7 @@ pub fn duration_ns(text: &str, sign: Sign) -> Result<i64, QuantityError> {
         None => (seconds * 1e9).round_to_i64(),
     };
     nanoseconds.ok_or_else(|| {
-        let message = format!("`{}` is too long: 292 years are the most", quantity.text);
+        let message = format!("`{}` is too long: the limit is 292 years", quantity.text);
         QuantityError::new(message, quantity.notes.number.clone())
     })
 }

@@ -33,7 +33,7 @@ impl<'a> Reader<'a> {
                 Some('/' | '∕') => true,
                 Some('*' | '·' | '⋅' | '∙' | '×') => false,
                 Some('-' | '−') => return self.unexpected(": a power is written as in `s^-1`"),
-                Some(',') => return self.unexpected(": decimals have a point"),
+                Some(',') => return self.unexpected(": write decimals with a point"),
                 Some(letter) if starts_unit(letter) || letter == '(' => {
                     return self.unexpected(": units are joined by `*` or `/`");
                 }
@@ -87,8 +87,8 @@ impl<'a> Reader<'a> {
         }
         if name.is_empty() {
             return match self.peek() {
-                Some(',') => self.unexpected(": decimals have a point"),
-                _ => self.unexpected(&format!(": a unit is needed, as in \"{}\"", self.example())),
+                Some(',') => self.unexpected(": write decimals with a point"),
+                _ => self.unexpected(&format!(": a unit is required, as in \"{}\"", self.example())),
             };
         }
         match unit::find(name) {
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
         match (unit::suggest(name), self.kind) {
             (Some(near), _) => format!("unknown unit `{name}`: did you mean `{near}`?"),
             (None, Some(kind)) => format!(
-                "unknown unit `{name}`: {} is needed, such as \"{}\"",
+                "unknown unit `{name}`: {} is required, such as \"{}\"",
                 kind.with_article(),
                 kind.example()
             ),

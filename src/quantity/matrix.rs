@@ -18,7 +18,7 @@ impl Kind {
         };
         let rows: Vec<_> = rows.split_inclusive(']').filter(|row| !row.trim().is_empty()).collect();
         let [x, y, z] = rows[..] else {
-            let message = format!("a matrix has 3 rows of 3 values, here are {}", rows.len());
+            let message = format!("a matrix has 3 rows of 3 values, not {}", rows.len());
             return Err(QuantityError::new(message, 0..text.len()));
         };
         // Whatever is wrong is somewhere in the text: the rows are read as texts of their own.

@@ -41,7 +41,7 @@ pub(super) fn quantity(text: &str, kind: Option<&Kind>) -> Result<Quantity, Quan
         (false, [value]) => Values::Scalar(*value),
         (_, [x, y, z]) => Values::Vector([*x, *y, *z]),
         (_, others) => {
-            let message = format!("a vector has 3 values, here are {}", others.len());
+            let message = format!("a vector has 3 values, not {}", others.len());
             return Err(QuantityError::new(message, number));
         }
     };
@@ -187,7 +187,7 @@ impl<'a> Reader<'a> {
         }
         let divisor = self.decimal()?;
         if divisor.value.hi == 0.0 {
-            return self.error("a fraction cannot be over 0", start..self.at);
+            return self.error("a fraction cannot have denominator 0", start..self.at);
         }
         let exact = number.exact.zip(divisor.exact);
         Ok(Number {
@@ -246,13 +246,15 @@ impl<'a> Reader<'a> {
         }
         self.at = start;
         match self.peek() {
-            None => self.error(format!("a value is missing: write one such as \"{example}\""), start..start),
+            None => {
+                self.error(format!("a value is missing: write, for example, \"{example}\""), start..start)
+            }
             Some('±') => self.unexpected(&format!(": write the number alone, as in \"{example}\"")),
             Some(letter) if starts_unit(letter) => self.error(
                 format!("a number is missing before `{}`, as in \"{example}\"", self.rest().trim()),
                 start..self.text.trim_end().len(),
             ),
-            Some(_) => self.unexpected(&format!(": a number is needed, as in \"{example}\"")),
+            Some(_) => self.unexpected(&format!(": a number is required, as in \"{example}\"")),
         }
     }
 }

@@ -52,7 +52,7 @@ impl Kind {
             }
             let reason = reason(&quantity).unwrap_or_else(|| {
                 let (is, needed) = (describe(quantity.dimension), self.with_article());
-                format!("{is}, but {needed} is needed, such as \"{}\"", self.example)
+                format!("{is}, but {needed} is required, such as \"{}\"", self.example)
             });
             let message = format!("`{}` {reason}", quantity.text);
             return Err(QuantityError::new(message, notes.unit.clone()));
@@ -79,7 +79,7 @@ impl Kind {
         }
         let (name, is, needed) = (text.trim(), describe(scale.dimension), self.with_article());
         let units = self.units.join("` or `");
-        let message = format!("`{name}` {is}, but {needed} is needed, such as `{units}`");
+        let message = format!("`{name}` {is}, but {needed} is required, such as `{units}`");
         Err(QuantityError::new(message, 0..text.len()))
     }
 
@@ -105,7 +105,7 @@ impl Kind {
         let inverse = self.dimensions.get(1) == Some(&quantity.dimension);
         let step = if inverse { Double::ONE / value } else { value };
         if !step.is_finite() || step.hi == 0.0 {
-            let message = format!("`{}` is no step that a number can hold", quantity.text);
+            let message = format!("`{}` is too small or too large a step for a number", quantity.text);
             return Err(QuantityError::new(message, quantity.notes.number));
         }
         Ok(Resolution::Step(step))
@@ -114,14 +114,16 @@ impl Kind {
     /// A vector stands where one value is needed.
     pub(super) fn one_needed(&self, quantity: &Quantity) -> QuantityError {
         let (text, name) = (&quantity.text, self.with_article());
-        let message =
-            format!("`{text}` is a vector, but {name} of one value is needed, such as \"{}\"", self.example);
+        let message = format!(
+            "`{text}` is a vector, but {name} with one value is required, such as \"{}\"",
+            self.example
+        );
         QuantityError::new(message, quantity.notes.number.clone())
     }
 
     fn unit_missing(&self, number: &str) -> String {
         let offers: Vec<_> = self.units.iter().map(|unit| format!("\"{number} {unit}\"")).collect();
-        format!("a unit is missing in `{number}`: write {}", offers.join(" or "))
+        format!("`{number}` has no unit: write {}", offers.join(" or "))
     }
 
     fn check_sign(&self, quantity: &Quantity) -> Result<(), QuantityError> {
@@ -139,7 +141,7 @@ impl Kind {
         }
         let (text, name) = (&quantity.text, self.with_article());
         let message = match self.sign {
-            Sign::Positive => format!("`{text}` is not above zero, as {name} here must be"),
+            Sign::Positive => format!("`{text}` is not above zero: {name} here must be"),
             _ => format!("`{text}` is negative, but {name} here must be 0 or above"),
         };
         Err(QuantityError::new(message, quantity.notes.number.clone()))

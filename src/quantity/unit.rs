@@ -177,7 +177,7 @@ impl Scale {
 struct Unit {
     /// Every spelling; the first is the one to suggest.
     names: &'static [&'static str],
-    /// The prefixes it takes (`µ` stands for `u` and the Greek mu too).
+    /// The prefixes it takes (`u` and the Greek mu also mean `µ`).
     prefixes: &'static str,
     /// Inside units in one of these, as a fraction …
     ratio: (u64, u64),

@@ -41,13 +41,13 @@ impl FromStr for Limit {
             BOUNDS.iter().find_map(|&(sign, bound, _)| text.split_once(sign).map(|parts| (parts, bound)));
         let Some(((field, value), bound)) = found else {
             return Err(LimitError(format!(
-                "`{text}` is no limit: write FIELD<VALUE, such as 'sensors.gyro.late_us.p99<200'"
+                "`{text}` is not a limit: write FIELD<VALUE, such as 'sensors.gyro.late_us.p99<200'"
             )));
         };
         match value.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Limit { field: field.trim().to_string(), bound, value }),
             _ => Err(LimitError(format!(
-                "`{text}`: `{}` is no number; a limit's value is a bare number in the field's own unit",
+                "`{text}`: `{}` is not a number; a limit's value is a bare number in the field's own unit",
                 value.trim()
             ))),
         }
@@ -69,7 +69,7 @@ impl Limit {
     pub fn check(&self, shape: &Value) -> Result<(), LimitError> {
         match self.find(shape)? {
             Value::Number(_) | Value::Null => Ok(()),
-            other => Err(LimitError(format!("`{}` is no number but {}", self.field, kind(other)))),
+            other => Err(LimitError(format!("`{}` is not a number but {}", self.field, kind(other)))),
         }
     }
 
@@ -116,7 +116,7 @@ impl Limit {
             value = next.ok_or_else(|| {
                 let instead = if names.is_empty() { "nothing below it".into() } else { names.join(", ") };
                 LimitError(format!(
-                    "`{}` is no field of the report: there is no `{step}`, but {instead}",
+                    "`{}` is not a field of the report: `{step}` does not exist; {instead}",
                     self.field
                 ))
             })?;
@@ -163,15 +163,15 @@ mod tests {
     fn mistakes_say_what_would_be_right() {
         for (text, says) in [
             ("p99=3", "FIELD<VALUE"),
-            ("p99<fast", "`fast` is no number"),
-            ("x<", "is no number"),
-            ("x<nan", "no number"),
+            ("p99<fast", "`fast` is not a number"),
+            ("x<", "is not a number"),
+            ("x<nan", "not a number"),
         ] {
             assert!(text.parse::<Limit>().unwrap_err().to_string().contains(says), "{text}");
         }
         for (text, says) in [
-            ("sensors.gyro.late.p99<1", "no `late`, but name, late_us"),
-            ("sensors.mag.late_us.p99<1", "no `mag`, but gyro"),
+            ("sensors.gyro.late.p99<1", "`late` does not exist; name, late_us"),
+            ("sensors.mag.late_us.p99<1", "`mag` does not exist; gyro"),
             ("sensors<1", "a list"),
             ("sensors.gyro.late_us<1", "a group"),
         ] {

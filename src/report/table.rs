@@ -134,7 +134,7 @@ fn laid_out(columns: &[&Column<'_>], width: usize) -> String {
     text
 }
 
-/// What each column gets: all that it wants where that fits, else what it needs at the least, and of the rest what
+/// What each column gets: all that it wants where that fits, else at least what it needs, and of the rest what
 /// spares most lines.
 fn widths(columns: &[&Column<'_>], width: usize) -> Vec<usize> {
     let room = width.saturating_sub(GAP * columns.len().saturating_sub(1));

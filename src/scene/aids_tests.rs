@@ -52,8 +52,8 @@ fn what_an_aid_cannot_be_is_refused_in_its_own_words() {
     let baro = |keys: &str| mistake(&format!("duration = \"1 s\"\n[baro]\nrate = \"10 Hz\"\n{keys}\n"));
     let gps = |keys: &str| mistake(&format!("duration = \"1 s\"\n[gps]\n{keys}\n"));
     for (message, expected) in [
-        (baro("noise_std = \"[1, 2, 3] Pa\""), "is a vector, but a pressure of one value is needed"),
-        (baro("noise_std = \"1 m\""), "is a length, but a pressure is needed"),
+        (baro("noise_std = \"[1, 2, 3] Pa\""), "is a vector, but a pressure with one value is required"),
+        (baro("noise_std = \"1 m\""), "is a length, but a pressure is required"),
         (baro("part = \"MPU-9250\""), "`part` is not a key of [baro]"),
         (baro("mount = \"flu\""), "`mount` is not a key of [baro]"),
         (baro("sea_level_pressure = \"0 Pa\""), "is not above zero"),
@@ -62,7 +62,7 @@ fn what_an_aid_cannot_be_is_refused_in_its_own_words() {
         (gps("sampling = \"average\""), "`sampling` is not a key of [gps]"),
         (gps("satellites = 300"), "satellites"),
         (gps("range = \"1 km\""), "`range` is not a key of [gps]"),
-        (gps("velocity_noise_std = \"1 m\""), "is a length, but a speed is needed"),
+        (gps("velocity_noise_std = \"1 m\""), "is a length, but a speed is required"),
         (mistake("duration = \"1 s\"\n[start]\nvelocity = \"3 m\"\n[gps]\n"), "is a length, but a speed"),
         (
             mistake("duration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\nvelocity_noise_std = \"1 m/s\"\n"),

@@ -174,7 +174,7 @@ impl Table {
         let place = Place::whole(&format!("--set {assignment}"));
         let wrong = |message: String| Mistake { place: place.clone(), message };
         let Some((path, text)) = assignment.split_once('=') else {
-            return Err(wrong("is no KEY=VALUE: write, for example, --set gyro.rate='8 kHz'".into()));
+            return Err(wrong("is not KEY=VALUE: write, for example, --set gyro.rate='8 kHz'".into()));
         };
         let value = value_of(text.trim(), &place);
         self.put(path.trim(), Node::new(value, place.clone()))
@@ -188,7 +188,7 @@ impl Table {
         let mut steps = path.split('.').peekable();
         while let Some(step) = steps.next() {
             if step.is_empty() {
-                return Err(wrong(format!("`{path}` is no key: write, for example, gyro.rate")));
+                return Err(wrong(format!("`{path}` is not a key: write, for example, gyro.rate")));
             }
             let found = table.entry(step, &place);
             if steps.peek().is_none() {
@@ -372,7 +372,7 @@ mod tests {
             ("seed", "KEY=VALUE"),
             ("motion.3.duration=1", "has 1 entry, motion.0"),
             ("seed.x=1", "not a table"),
-            ("a..b=1", "no key"),
+            ("a..b=1", "not a key"),
         ] {
             let message = table.set(bad).unwrap_err().to_string();
             assert!(message.starts_with(&format!("--set {bad}")) && message.contains(says), "{message}");

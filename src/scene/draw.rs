@@ -122,7 +122,7 @@ impl Section<'_> {
         let (first, second) = (end(low, kind), end(high, second));
         let (first, second) = (first?, second?);
         if shape == Shape::Uniform && (0..3).any(|axis| first[axis] > second[axis]) {
-            self.note(&entry.node.place, format!("`{key}`: `uniform` takes its lower end first"));
+            self.note(&entry.node.place, format!("`{key}`: `uniform` takes the lower end first"));
             return None;
         }
         Some((shape, first, second))
@@ -144,7 +144,7 @@ impl Shape {
         }
     }
 
-    /// What that stands for between two ends, or about a mean and with a standard deviation.
+    /// What that means between two ends, or about a mean and with a standard deviation.
     fn value(self, a: f64, b: f64, fresh: f64) -> f64 {
         match self {
             Shape::Uniform => a + (b - a) * fresh,

@@ -1,4 +1,4 @@
-//! A value drawn for a run, as people and files are told of it.
+//! A value drawn for a run, as shown to people and written to files.
 
 use crate::quantity::Kind;
 

@@ -1,4 +1,4 @@
-//! `[[fault]]`: what a sensor does wrong for a while, or what becomes of an output's packets.
+//! `[[fault]]`: what a sensor does wrong for a while, or how an output's packets are damaged or lost.
 
 use super::document::Value;
 use super::output::{Destination, Output};
@@ -97,14 +97,14 @@ fn read(section: &Section<'_>, sensors: &mut [SensorPlan], outputs: &[Output], a
     if let Some(kind) = wire::FaultKind::ALL.into_iter().find(|known| known.name() == kind) {
         if section.has_quietly("sensor") {
             let kind = kind.name();
-            section.mistake("sensor", format!("{kind} happens to packets: name an `output` or leave it out"));
+            section.mistake("sensor", format!("{kind} is a packet fault: name an `output` or leave it out"));
             return section.allow_everything();
         }
         all.extend(of_output(section, kind, outputs));
     } else if let Some(kind) = sensor::FaultKind::ALL.into_iter().find(|known| known.name() == kind) {
         if section.has_quietly("output") {
             let (kind, kinds) = (kind.name(), of_outputs.join(", "));
-            section.mistake("output", format!("{kind} is a fault of a sensor; those of outputs are {kinds}"));
+            section.mistake("output", format!("{kind} is a sensor fault; the packet faults are {kinds}"));
             return section.allow_everything();
         }
         of_sensor(section, kind, sensors);
@@ -127,7 +127,7 @@ fn of_sensor(section: &Section<'_>, kind: sensor::FaultKind, sensors: &mut [Sens
             }
             plan.faults.push(fault);
         }
-        None => section.mistake("sensor", format!("the scene has no {sensor} to have a fault")),
+        None => section.mistake("sensor", format!("the scene has no {sensor} for this fault")),
     }
 }
 
@@ -141,8 +141,8 @@ fn of_output(section: &Section<'_>, kind: wire::FaultKind, outputs: &[Output]) -
     if !outputs.is_empty() && !outputs.iter().enumerate().any(|(i, output)| fault.concerns(i, output)) {
         let list = outputs.iter().enumerate().map(|(i, output)| format!("{i} \"{}\"", output.to));
         let list = list.collect::<Vec<_>>().join(", ");
-        let why = if kind == wire::FaultKind::Split { " that goes out in pieces" } else { "" };
-        section.mistake("output", format!("names none of the scene's outputs{why}, which are {list}"));
+        let why = if kind == wire::FaultKind::Split { " that is sent in pieces" } else { "" };
+        section.mistake("output", format!("matches none of the scene's outputs{why}, which are {list}"));
     }
     Some(fault)
 }
@@ -158,8 +158,7 @@ fn on(section: &Section<'_>) -> Option<On> {
         }
         Some(other) => {
             let is = other.what();
-            section
-                .mistake("output", format!("is {is}; write its `to`, or its place in the scene from 0 on"));
+            section.mistake("output", format!("is {is}; write its `to`, or its number in the scene, from 0"));
             None
         }
     }

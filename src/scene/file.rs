@@ -26,7 +26,7 @@ impl Section<'_> {
         if let Some(kind) = kind_of(&bytes) {
             self.mistake(
                 key,
-                kind.refusal(&name, "no scene reads: it reads tables of text, such as CSV with a header"),
+                kind.refusal(&name, "a scene does not read: it reads text tables, such as CSV with a header"),
             );
             return None;
         }
@@ -39,7 +39,7 @@ impl Section<'_> {
             Err(error) => {
                 let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
                 let line = valid.split(|b| *b == b'\n').count();
-                self.mistake(key, format!("{name}:{line} is no text (UTF-8)"));
+                self.mistake(key, format!("{name}:{line} is not UTF-8 text"));
                 return None;
             }
         };

@@ -68,7 +68,7 @@ fn read(section: &Section<'_>, kind: SensorKind) -> Result<Table, Vec<String>> {
     let text = fs::read_to_string(&path).map_err(|error| one(format!("cannot read {shown}: {error}")))?;
     section.reader.files.borrow_mut().push(path.clone());
     let documents = MarkedYaml::load_from_str(&without_directive(&text))
-        .map_err(|error| one(format!("{shown} is no YAML: {error}")))?;
+        .map_err(|error| one(format!("{shown} is not YAML: {error}")))?;
     // The file that Kalibr writes has all of it under `imu0`.
     let top = documents.first().map(|top| top.data.as_mapping_get("imu0").unwrap_or(top));
     let mut mistakes = Vec::new();
@@ -185,7 +185,7 @@ mod tests {
         ] {
             assert!(said.contains(says), "{says} is missing from {said}");
         }
-        assert!(plan(": [", "").unwrap_err().to_string().contains("is no YAML"));
+        assert!(plan(": [", "").unwrap_err().to_string().contains("is not YAML"));
         let mag =
             Plan::parse("duration = \"1 s\"\n[mag]\npart = \"imu.yaml\"\n", "s.toml", "s", &[]).unwrap_err();
         assert!(mag.to_string().contains("has no mag"), "{mag}");

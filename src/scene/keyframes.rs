@@ -13,7 +13,7 @@ impl Section<'_> {
     pub(super) fn attitude(&self, default: Option<&str>) -> Option<Attitude> {
         let q = if self.has("quaternion") {
             if self.has("attitude") {
-                self.mistake("quaternion", "`attitude` is given beside it: keep one of the two");
+                self.mistake("quaternion", "`attitude` is also given: keep only one");
             }
             self.quaternion("quaternion").map(|[w, x, y, z]| DQuat::from_xyzw(x, y, z, w))
         } else {

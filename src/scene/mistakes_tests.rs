@@ -71,10 +71,10 @@ const KEYS: &[Case] = &[
     (gyro!("NoiseDensity = \"1 deg/s/√Hz\""), &[("4:1", "MATLAB|`noise_density`")]),
     (gyro!("AxesMisalignment = 1"), &[("4:1", "`misalignment`")]),
     (gyro!("odr = \"1 kHz\""), &[("4:1", "`odr` is spelled `rate` here")]),
-    (gyro!("velocity_random_walk = \"1 m/s/√h\""), &[("4:1", "a gyro has an `angle_random_walk`")]),
+    (gyro!("velocity_random_walk = \"1 m/s/√h\""), &[("4:1", "a gyro has `angle_random_walk`")]),
     (
         gyro!("[mag]\nrate = \"1 Hz\"\nangle_random_walk = \"1 deg/√h\""),
-        &[("6:1", "no meaning for a magnetometer|`noise_density`")],
+        &[("6:1", "does not apply to a magnetometer|`noise_density`")],
     ),
     (
         motion!("kind = \"rotate\"\nroll = \"1 deg/s\"\nduration = \"1 s\"\nfrequency = \"1 Hz\""),
@@ -85,13 +85,10 @@ const KEYS: &[Case] = &[
 const UNITS: &[Case] = &[
     (
         gyro!("noise_std = 0.01"),
-        &[("4:13", "`noise_std`: a unit is missing in `0.01`: write \"0.01 rad/s\" or \"0.01 deg/s\"")],
+        &[("4:13", "`noise_std`: `0.01` has no unit: write \"0.01 rad/s\" or \"0.01 deg/s\"")],
     ),
-    (gyro!("noise_std = \"0.01\""), &[("4:14", "a unit is missing in `0.01`")]),
-    (
-        gyro!("bias = [1, 2, 3]"),
-        &[("4:8", "`bias`: a unit is missing in `[1, 2, 3]`: write \"[1, 2, 3] rad/s\"")],
-    ),
+    (gyro!("noise_std = \"0.01\""), &[("4:14", "`0.01` has no unit")]),
+    (gyro!("bias = [1, 2, 3]"), &[("4:8", "`bias`: `[1, 2, 3]` has no unit: write \"[1, 2, 3] rad/s\"")]),
     (
         gyro!("bias = [\"1 rad/s\", \"2 rad/s\", \"3 rad/s\"]"),
         &[("4:8", "`bias` is an array; write a string with a unit, such as \"[1, 2, 3] rad/s\"")],
@@ -99,25 +96,25 @@ const UNITS: &[Case] = &[
     (
         "duration = 5\n[gyro]\nrate = 1000\n",
         &[
-            ("1:12", "`duration`: a unit is missing in `5`: write \"5 s\""),
-            ("3:8", "`rate`: a unit is missing in `1000`: write \"1000 Hz\""),
+            ("1:12", "`duration`: `5` has no unit: write \"5 s\""),
+            ("3:8", "`rate`: `1000` has no unit: write \"1000 Hz\""),
         ],
     ),
     (
         gyro!("bias = \"3 uT\""),
         &[(
             "4:11",
-            "`bias`: `3 uT` is a magnetic field, but an angular rate is needed, such as \"20 deg/s\"",
+            "`bias`: `3 uT` is a magnetic field, but an angular rate is required, such as \"20 deg/s\"",
         )],
     ),
     (
         gyro!("noise_density = \"0.01 deg/s\""),
-        &[("4:23", "is an angular rate, but a gyro noise density is needed, such as \"0.01 deg/s/rtHz\"")],
+        &[("4:23", "is an angular rate, but a gyro noise density is required, such as \"0.01 deg/s/rtHz\"")],
     ),
     (gyro!("bias = \"3 degs/s\""), &[("4:11", "unknown unit `degs`: did you mean `deg")]),
     (
         "duration = \"1 s\"\n[gyro]\nrate = \"1 ms\"\n",
-        &[("3:11", "`1 ms` is a time, but a rate is needed: write \"1000 Hz\"")],
+        &[("3:11", "`1 ms` is a time, but a rate is required: write \"1000 Hz\"")],
     ),
     (gyro!("noise_std = \"-1 deg/s\""), &[("4:14", "`noise_std`: `-1 deg/s` is negative|0 or above")]),
     (gyro!("bias_step_std = \"-1 deg/s\""), &[("4:18", "`bias_step_std`|is negative")]),
@@ -126,12 +123,12 @@ const UNITS: &[Case] = &[
     (gyro!("bias = \"nan rad/s\""), &[("4:9", "`bias`: `nan` is not a finite number")]),
     (gyro!("bias = inf"), &[("4:8", "`inf` is not a finite number")]),
     (gyro!("bias = \"1e400 rad/s\""), &[("4:9", "too large")]),
-    (gyro!("bias = \"[1, 2] rad/s\""), &[("4:9", "a vector has 3 values, here are 2")]),
+    (gyro!("bias = \"[1, 2] rad/s\""), &[("4:9", "a vector has 3 values, not 2")]),
     (
         gyro!("bias = true"),
         &[("4:8", "`bias` is true or false; write a string with a unit, such as \"[1, 2, 3] rad/s\"")],
     ),
-    (gyro!("bias = \"\""), &[("4:9", "`bias`: a value is missing: write one such as \"20 deg/s\"")]),
+    (gyro!("bias = \"\""), &[("4:9", "`bias`: a value is missing: write, for example, \"20 deg/s\"")]),
     ("duration = \"1 s\"\n[gyro]\nrate = \"2 MHz\"\n", &[("3:9", "`2 MHz` is above 1 MHz")]),
     ("duration = \"1 s\"\n[gyro]\nrate = \"0 Hz\"\n", &[("3:9", "`0 Hz` is not above zero")]),
     (gyro!("phase = \"-1 ms\""), &[("4:10", "`phase`|is negative")]),
@@ -144,38 +141,35 @@ const SENSORS: &[Case] = &[
     ),
     (
         gyro!("noise_std = \"1 rad/s\"\nnoise_density = \"1 rad/s/√Hz\""),
-        &[(
-            "5:17",
-            "`noise_density`: the gyro's white noise is given by `noise_std` already: keep one of the two",
-        )],
+        &[("5:17", "`noise_density`: the gyro's white noise is already given by `noise_std`: keep only one")],
     ),
     (
         gyro!("bias_instability = \"1 deg/h\""),
         &[(
             "4:20",
-            "`bias_instability` needs a `correlation_time` beside it, such as \"500 s\"|`bias_random_walk`",
+            "`bias_instability` needs a `correlation_time` too, such as \"500 s\"|`bias_random_walk`",
         )],
     ),
     (
         gyro!("bias_instability = \"1 deg/h\"\ncorrelation_time = \"0 s\""),
-        &[("5:20", "`correlation_time`: a correlation time is above 0|`noise_std`")],
+        &[("5:20", "`correlation_time`: a correlation time must be above 0|`noise_std`")],
     ),
     (
         gyro!("bias_instability = \"1 deg/h\"\ncorrelation_time = \"inf s\""),
-        &[("5:21", "`inf` is not a finite number: a bias that never forgets is `bias_random_walk`")],
+        &[("5:21", "`inf` is not a finite number: for a bias without bound use `bias_random_walk`")],
     ),
     (
         gyro!("bias_instability = \"1 deg/h\"\ncorrelation_time = inf"),
         &[("5:20", "not a finite number|`bias_random_walk`")],
     ),
     (gyro!("range = \"0 rad/s\""), &[("4:10", "`range`: `0 rad/s` is not above zero")]),
-    (gyro!("resolution = \"16 bit\""), &[("4:14", "`resolution`: bits need a `range` beside them")]),
+    (gyro!("resolution = \"16 bit\""), &[("4:14", "`resolution`: bits also need a `range`")]),
     (gyro!("resolution = \"1.5 bit\""), &[("4:15", "not a whole number of bits")]),
     (
         gyro!("range = \"1 rad/s\"\nresolution = \"2 rad/s\""),
         &[("5:14", "one count, 2 rad/s, is more than the whole range of ±1 rad/s")],
     ),
-    (gyro!("mount = \"frx\""), &[("4:9", "`frx` is no right-handed mount|\"flu\"")]),
+    (gyro!("mount = \"frx\""), &[("4:9", "`frx` is not a right-handed mount|\"flu\"")]),
     (gyro!("mount = \"fru\""), &[("4:9", "right-handed")]),
     (gyro!("mount = [1, 1, 0, 0]"), &[("4:9", "`mount`: [1, 1, 0, 0] has the length 1.4142")]),
     (
@@ -186,19 +180,19 @@ const SENSORS: &[Case] = &[
         gyro!("sampling = \"avarage\""),
         &[("4:12", "`sampling` takes point or average, not `avarage`; did you mean `average`?")],
     ),
-    (gyro!("part = \"MPU9250\""), &[("4:8", "`MPU9250` is no part known here|did you mean `MPU-9250`?")]),
+    (gyro!("part = \"MPU9250\""), &[("4:8", "`MPU9250` is not a known part|did you mean `MPU-9250`?")]),
     (
         "duration = \"1 s\"\n[mag]\nrate = \"1 Hz\"\npart = \"MPU-6050\"\n",
-        &[("4:8", "`MPU-6050` has no mag; parts with one: MPU-9250")],
+        &[("4:8", "`MPU-6050` has no mag; parts that have one: MPU-9250")],
     ),
     (
         gyro!("part = \"MPU-9250\"\nrange = \"300 deg/s\""),
         &[(
             "5:9",
-            "the part has no such range: choose one of 250 deg/s, 500 deg/s, 1000 deg/s, 2000 deg/s, or give a `resolution`",
+            "the part has no such range: choose one of 250 deg/s, 500 deg/s, 1000 deg/s, 2000 deg/s, or add a `resolution`",
         )],
     ),
-    (gyro!("part = \"MPU-9250\"\nrange = 300"), &[("5:9", "`range`: a unit is missing in `300`")]),
+    (gyro!("part = \"MPU-9250\"\nrange = 300"), &[("5:9", "`range`: `300` has no unit")]),
     (
         gyro!("noise_std = { unifrom = [\"1 rad/s\", \"2 rad/s\"] }"),
         &[("4:13", "a drawn value is { uniform = [low, high] } or { normal = [mean, std] }")],
@@ -209,10 +203,7 @@ const SENSORS: &[Case] = &[
     ),
     (gyro!("noise_std = { uniform = [\"2 rad/s\", \"1 rad/s\"] }"), &[("4:25", "lower end first")]),
     (gyro!("noise_std = { normal = [\"1 rad/s\", \"-1 rad/s\"] }"), &[("4:37", "is negative")]),
-    (
-        gyro!("noise_std = { uniform = [1, 2] }"),
-        &[("4:26", "a unit is missing in `1`"), ("4:29", "a unit is missing in `2`")],
-    ),
+    (gyro!("noise_std = { uniform = [1, 2] }"), &[("4:26", "`1` has no unit"), ("4:29", "`2` has no unit")]),
     ("duration = \"1 s\"\ngyro = 5\n", &[("2:8", "`gyro` is a bare number; write it as one table, [gyro]")]),
     (
         "duration = \"1 s\"\n[[gyro]]\nrate = \"1 Hz\"\n",
@@ -238,7 +229,7 @@ const MOTIONS: &[Case] = &[
     ("duration = \"300 y\"\n[gyro]\nrate = \"1 Hz\"\n", &[("1:17", "unknown unit `y`")]),
     (
         motion!("kind = \"spin\"\nduration = \"1 s\"\nspeed = 3"),
-        &[("4:8", "`spin` is no kind of motion; there are hold, rotate, cone, circle")],
+        &[("4:8", "`spin` is not a kind of motion; the kinds are hold, rotate, cone, circle")],
     ),
     (motion!("kind = \"rotat\"\nduration = \"1 s\""), &[("4:8", "did you mean `rotate`?")]),
     (
@@ -276,7 +267,7 @@ const MOTIONS: &[Case] = &[
     ),
     (
         motion!("kind = \"circle\"\nbank = \"25 deg\"\nspeed = \"15 m/s\"\nduration = \"3 s\""),
-        &[("3:1", "`entry`: rolling in and out over 2 s each does not fit in the motion's 3 s")],
+        &[("3:1", "`entry`: rolling in and out takes 2 s each, which does not fit in the motion's 3 s")],
     ),
     (
         motion!("kind = \"circle\"\nbank = \"95 deg\"\nspeed = \"15 m/s\""),
@@ -308,13 +299,13 @@ const MOTIONS: &[Case] = &[
     ),
     (
         gyro!("[start]\nquaternion = [1, 0, 0, 0]\nattitude = \"0 deg\"\n"),
-        &[("5:14", "`attitude` is given beside it")],
+        &[("5:14", "`attitude` is also given")],
     ),
 ];
 
 const EARTH: &[Case] = &[
-    (earth!("date = \"22.11.2026\""), &[("4:8", "`22.11.2026` is no date: write it as in \"2026-11-22\"")]),
-    (earth!("date = \"2026-02-30\""), &[("4:8", "is no date")]),
+    (earth!("date = \"22.11.2026\""), &[("4:8", "`22.11.2026` is not a date: write it like \"2026-11-22\"")]),
+    (earth!("date = \"2026-02-30\""), &[("4:8", "is not a date")]),
     (
         earth!("date = \"2050-01-01\"\nlatitude = \"1 deg\"\nlongitude = \"1 deg\""),
         &[("4:8", "World Magnetic Model has no field|give `field` itself")],
@@ -331,40 +322,37 @@ const EARTH: &[Case] = &[
     ),
     (
         earth!("altitude = \"900 km\"\nlatitude = \"5 deg\"\nlongitude = \"0 deg\"\ndate = \"2026-11-22\""),
-        &[("4:12", "reaches from -1 km to 850 km")],
+        &[("4:12", "covers -1 km to 850 km")],
     ),
     (earth!("gravity = \"-9.8 m/s^2\""), &[("4:12", "`gravity`: `-9.8 m/s^2` is negative")]),
-    (
-        earth!("gravity = 9.8"),
-        &[("4:11", "`gravity`: a unit is missing in `9.8`: write \"9.8 m/s^2\" or \"9.8 g\"")],
-    ),
-    (earth!("field = \"[1, 2, 3] T/s\""), &[("4:20", "magnetic field is needed")]),
+    (earth!("gravity = 9.8"), &[("4:11", "`gravity`: `9.8` has no unit: write \"9.8 m/s^2\" or \"9.8 g\"")]),
+    (earth!("field = \"[1, 2, 3] T/s\""), &[("4:20", "magnetic field is required")]),
 ];
 
 const REST: &[Case] = &[
     (
         gyro!("[[output]]\nto = \"mpu\"\n"),
-        &[("5:6", "`mpu` is no PROTOCOL@LINK: write, for example, mpu@/dev/ttyACM0")],
+        &[("5:6", "`mpu` is not PROTOCOL@LINK: write, for example, mpu@/dev/ttyACM0")],
     ),
     (
         gyro!("[[output]]\nto = \"mpuu@pty\"\n"),
-        &[("5:6", "`mpuu` is no protocol of this version (mpu, mavlink, |did you mean `mpu`?")],
+        &[("5:6", "`mpuu` is not a protocol of this version (mpu, mavlink, |did you mean `mpu`?")],
     ),
     (
         gyro!("[reference]\nmethod = \"magnus\"\n"),
-        &[("5:10", "`magnus` is no method (euler, paper, |did you mean `magnus-4`?")],
+        &[("5:10", "`magnus` is not a method (euler, paper, |did you mean `magnus-4`?")],
     ),
     (
         gyro!("[reference]\nmethod = \"auto\"\nrate = \"1 Hz\"\ntolerance = \"0 deg\"\n"),
-        &[("6:8", "`auto` chooses the rate, too"), ("7:14", "`0 deg` is not above zero")],
+        &[("6:8", "`auto` chooses the rate itself"), ("7:14", "`0 deg` is not above zero")],
     ),
     (
         gyro!("[reference]\nmethod = \"rk4\"\ntolerance = \"1 deg\"\n"),
-        &[("6:13", "`tolerance`: goes with method = \"auto\": `rk4` errs as it errs")],
+        &[("6:13", "`tolerance` needs method = \"auto\": `rk4` does not adapt to a tolerance")],
     ),
     (
         "duration = \"1 s\"\n[accel]\nrate = \"1 Hz\"\n[mag]\nrate = \"1 Hz\"\n[reference]\nfrom = \"accel-mag\"\nrate = \"2 Hz\"\n",
-        &[("8:8", "goes with from = \"gyro\": accel-mag has no steps")],
+        &[("8:8", "needs from = \"gyro\": accel-mag has no steps")],
     ),
     (gyro!("[reference]\nfrom = \"gyros\"\n"), &[("5:8", "`from` takes gyro or accel-mag, not `gyros`")]),
     (gyro!("[reference]\nfrom = \"accel-mag\"\n"), &[("5:8", "needs both an [accel] and a [mag]")]),
@@ -383,7 +371,7 @@ const REST: &[Case] = &[
     (gyro!("[[output]]\nlayout = \"burst\"\n"), &[("4:1", "an output needs a destination")]),
     (
         gyro!("[[output]]\nto = \"mpu\"\nlayout = \"brst\"\n"),
-        &[("5:6", "no PROTOCOL@LINK"), ("6:10", "did you mean `burst`?")],
+        &[("5:6", "is not PROTOCOL@LINK"), ("6:10", "did you mean `burst`?")],
     ),
     (gyro!("[[output]]\n"), &[("4:1", "an output needs a destination, such as to = \"mpu@pty\"")]),
     (
@@ -412,7 +400,7 @@ const REST: &[Case] = &[
     ),
     (
         gyro!("[[output]]\nto = \"mpu@/dev/ttyUSB0,115200\"\npace = true\n"),
-        &[("6:8", "`pace` is for a pty: a serial port takes its own time")],
+        &[("6:8", "`pace` is only for a pty: a serial port has its own timing")],
     ),
     (
         gyro!("[[output]]\nto = \"mpu@tcpin:4560\"\npace = true\n"),
@@ -431,7 +419,7 @@ const REST: &[Case] = &[
     ),
     (
         gyro!("[[output]]\nto = \"mpu@pty,fast\"\n"),
-        &[("5:6", "`fast` is no speed in baud (50 to 20000000); say pty,921600")],
+        &[("5:6", "`fast` is not a baud rate (50 to 20000000); say pty,921600")],
     ),
     (
         "seed = -1\nduration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\n",
@@ -476,10 +464,10 @@ const REST: &[Case] = &[
         &[
             ("1:8", "`seed` is a bare number; write a whole number"),
             ("3:12", "a place needs a `longitude` too"),
-            ("6:11", "`roll`: `1 deg` is an angle, but an angular rate is needed"),
-            ("7:12", "a unit is missing in `5`"),
+            ("6:11", "`roll`: `1 deg` is an angle, but an angular rate is required"),
+            ("7:12", "`5` has no unit"),
             ("8:1", "[gyro] needs a rate"),
-            ("9:13", "a unit is missing in `1`"),
+            ("9:13", "`1` has no unit"),
             ("11:1", "`baud` is not a key of [gyro]"),
             ("13:6", "`to`"),
         ],

@@ -74,7 +74,7 @@ fn mistakes_in_keys_are_placed() {
         ("{ t = \"4 s\", attitude = \"[0, 0, 0] deg\" }", "the last is at 4 s, but the motion ends at 3 s"),
         (
             "{ t = \"2 s\", attitude = \"0 deg\" }, { t = \"1 s\", attitude = \"0 deg\" }",
-            "1 s comes after 2 s: write them in order of time",
+            "1 s comes after 2 s: write them in time order",
         ),
     ] {
         let error = waypoints(keys).unwrap_err();
@@ -85,7 +85,7 @@ fn mistakes_in_keys_are_placed() {
 #[test]
 fn what_cannot_be_solved_exactly_is_refused_at_its_key() {
     let error = Plan::parse(&PROGRAMME.replace("2 Hz", "1 GHz"), "s.toml", "s", &[]).unwrap_err().to_string();
-    assert!(error.contains("`bandwidth`: together with the duration"), "{error}");
+    assert!(error.contains("`bandwidth`: with this duration"), "{error}");
 }
 
 /// The first second of a truth as a dataset writes it, in these axes.
@@ -157,7 +157,7 @@ fn a_first_log_settles_the_start_and_a_later_one_must_fit_or_be_turned() {
     let elsewhere = "[start]\nattitude = \"[0, 0, 0] deg\"\n";
     let error = replay(Axes::NedFrd, folder.path(), elsewhere, "").unwrap_err();
     for says in
-        ["s.toml:6:8: `file`: ", "truth.csv:2 begins 3", "[start] quaternion = [0.9", "align = \"start\""]
+        ["s.toml:6:8: `file`: ", "truth.csv:2 starts 3", "[start] quaternion = [0.9", "align = \"start\""]
     {
         assert!(error.contains(says), "{error}");
     }
@@ -191,7 +191,7 @@ fn mistakes_in_a_replay_are_placed() {
         ),
         ("time = { column = \"t_ns\" }", "`time` needs a `unit`"),
         ("time = { unit = \"s\" }", "`time` needs a `column`"),
-        ("time = { column = \"t_ns\", unit = \"deg\" }", "5:34: `deg` is an angle, but a time is needed"),
+        ("time = { column = \"t_ns\", unit = \"deg\" }", "5:34: `deg` is an angle, but a time is required"),
         ("time = { column = \"t_ns\", unit = \"ns\", scale = 3 }", "`scale` is not a key of `time`"),
         (
             "time = { column = \"t_n\", unit = \"ns\" }",
@@ -201,7 +201,7 @@ fn mistakes_in_a_replay_are_placed() {
         ("quaternion = [\"qw\", \"qx\", \"q3\", \"q4\"]", "has no column `q3`, `q4`"),
         (
             "quaternion = [\"qw\", \"qx\", \"qy\", \"qz\"]\neuler = { columns = [\"qx\", \"qy\", \"qz\"], unit = \"rad\" }",
-            "6:9: `euler` is given beside `quaternion`: keep one of the two",
+            "6:9: `euler` is given with `quaternion`: keep only one",
         ),
         ("align = \"end\"", "5:9: `align` takes none or start, not `end`"),
         ("fle = \"x\"", "5:1: `fle` is not a key of a `replay` motion: did you mean `file`?"),

@@ -7,7 +7,7 @@ use crate::quantity::Kind;
 use glam::{DMat3, DVec3};
 
 impl Section<'_> {
-    /// A table of its own, or an array of them where there may be several; a bare value stands for one of its keys.
+    /// A table of its own, or an array of them where there may be several; a bare value sets one of its keys.
     pub(super) fn nested(&self, key: &'static str, nested: &Nested, may_draw: bool) -> Option<Vec<Values>> {
         let entry = self.entry(key)?;
         let nodes = match &entry.node.value {

@@ -28,7 +28,7 @@ impl Section<'_> {
         if (length - 1.0).abs() > 1e-3 {
             self.mistake(
                 key,
-                format!("[{w}, {x}, {y}, {z}] has the length {length:.4}, but a rotation's is 1"),
+                format!("[{w}, {x}, {y}, {z}] has the length {length:.4}, but a rotation has length 1"),
             );
             return None;
         }

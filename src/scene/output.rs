@@ -44,7 +44,7 @@ impl FromStr for Destination {
             let example = if Target::from_name(text).is_some() { text } else { "mpu" };
             let link = if example == text { "/dev/ttyACM0" } else { "pty" };
             return Err(format!(
-                "`{text}` is no PROTOCOL@LINK: write, for example, {example}@{link} (protocols: {})",
+                "`{text}` is not PROTOCOL@LINK: write, for example, {example}@{link} (protocols: {})",
                 names.join(", ")
             ));
         };
@@ -52,7 +52,7 @@ impl FromStr for Destination {
         let Some(protocol) = target.map(|target| target.protocol).or_else(|| Protocol::from_name(name))
         else {
             let near = suggest::did_you_mean(name, names.iter().copied());
-            return Err(format!("`{name}` is no protocol of this version ({}){near}", names.join(", ")));
+            return Err(format!("`{name}` is not a protocol of this version ({}){near}", names.join(", ")));
         };
         let mut address = address.parse::<Address>().map_err(|error| error.to_string())?;
         if let Some(baud) = target.and_then(|target| target.baud) {
@@ -68,7 +68,7 @@ impl fmt::Display for Destination {
     }
 }
 
-/// What becomes of a packet that its link does not take when it is due.
+/// What to do with a packet that its link does not accept when it is due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overload {
     /// It is dropped. Whatever is sent is on time: a flight controller that stamps samples on arrival is never told
@@ -104,11 +104,11 @@ pub struct Output {
     pub to: Destination,
     /// How the protocol lays its packets out.
     pub wire: wire::Options,
-    /// What becomes of a packet that the link does not take in time.
+    /// What to do with a packet that the link does not accept in time.
     pub overload: Overload,
     /// Whether to start although the baud rate does not carry the packets.
     pub force: bool,
-    /// What becomes of its packets on their way.
+    /// The faults of its packets.
     pub faults: Vec<wire::Fault>,
 }
 
@@ -207,7 +207,7 @@ fn paced(section: &Section<'_>, to: &Destination) {
             section.mistake("pace", format!("needs a baud rate: write to = \"{}\"", example()))
         }
         Address::Serial { .. } => {
-            section.mistake("pace", "is for a pty: a serial port takes its own time; leave it out")
+            section.mistake("pace", "is only for a pty: a serial port has its own timing; leave it out")
         }
         _ => section.mistake("pace", format!("is for a pty with a baud rate, not for `{}`", to.address)),
     }

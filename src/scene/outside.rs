@@ -6,7 +6,7 @@ use crate::sensor::SensorPlan;
 /// Motions, forces, faults and sensors of which nothing is within the scene.
 pub(super) fn warnings(plan: &Plan) -> Vec<String> {
     let end = plan.duration;
-    let after = |what: String| format!("{what}, and the scene ends at {end}: it is never played");
+    let after = |what: String| format!("{what}, but the scene ends at {end}: it never plays");
     let path = &plan.trajectory;
     let motions = path.starts().filter(|start| *start >= end);
     let mut all: Vec<_> = motions.map(|start| after(format!("a motion begins at {start}"))).collect();
@@ -18,7 +18,7 @@ pub(super) fn warnings(plan: &Plan) -> Vec<String> {
         faults.map(|fault: &OutputFault| after(format!("the fault {fault} begins at {}", fault.start()))),
     );
     if !plan.sensors.is_empty() && plan.sensors.iter().all(|sensor| ticks(plan, sensor) == 0) {
-        all.push(format!("no sensor samples within the scene's {end}: there is nothing to play"));
+        all.push(format!("no sensor samples before the scene ends at {end}: there is nothing to play"));
     }
     all
 }
@@ -27,7 +27,7 @@ fn of_sensor(plan: &Plan, sensor: &SensorPlan) -> Vec<String> {
     let (kind, end) = (sensor.kind, plan.duration);
     if ticks(plan, sensor) == 0 {
         let phase = sensor.phase;
-        return vec![format!("{kind} never samples: its phase is {phase}, and the scene ends at {end}")];
+        return vec![format!("{kind} never samples: its phase is {phase}, but the scene ends at {end}")];
     }
     let before = |t| sensor.clock().ticks_before(sensor.phase, t);
     let idle = sensor.faults.iter().filter(|fault| before(fault.start) >= before(fault.end.min(end)));
@@ -37,7 +37,7 @@ fn of_sensor(plan: &Plan, sensor: &SensorPlan) -> Vec<String> {
         } else {
             "no sample is due then".into()
         };
-        format!("the fault {kind} {fault} acts on nothing: {why}")
+        format!("the fault {kind} {fault} has no effect: {why}")
     })
     .collect()
 }
@@ -106,8 +106,8 @@ mod tests {
             ))
         };
         let told = cone("200 deg");
-        assert!(told.contains("half_angle of 200 deg is one of 160 deg"), "{told}");
-        assert!(cone("365 deg").contains("is one of 5 deg"));
+        assert!(told.contains("half_angle of 200 deg equals one of 160 deg"), "{told}");
+        assert!(cone("365 deg").contains("equals one of 5 deg"));
         for plain in ["180 deg", "120 deg", "-5 deg"] {
             assert_eq!(cone(plain), "", "{plain}");
         }

@@ -195,7 +195,7 @@ impl Settings {
             for row in rows {
                 settings.add(name, row).ok_or_else(|| Mistake {
                     place: row.place.clone(),
-                    message: format!("this is no setting of the {name} of {kind}"),
+                    message: format!("this is not a setting of the {name} of {kind}"),
                 })?;
             }
         }

@@ -23,8 +23,10 @@ pub(super) fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'stat
     let Some(part) = parts::find(&name, kind) else {
         let names: Vec<_> = parts::names(kind).collect();
         let near = suggest::did_you_mean(&name, names.iter().copied());
-        section
-            .mistake("part", format!("`{name}` is no part known here; there are {}{near}", names.join(", ")));
+        section.mistake(
+            "part",
+            format!("`{name}` is not a known part; the parts are {}{near}", names.join(", ")),
+        );
         return None;
     };
     let file = match File::of(part) {
@@ -37,7 +39,7 @@ pub(super) fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'stat
     let Some(preset) = super::parts::sensor(&file.table, kind) else {
         let having = parts::all().iter().filter(|part| part.text.contains(&format!("[{kind}]")));
         let names: Vec<_> = having.map(|part| part.names[0]).collect();
-        section.mistake("part", format!("`{name}` has no {kind}; parts with one: {}", names.join(", ")));
+        section.mistake("part", format!("`{name}` has no {kind}; parts that have one: {}", names.join(", ")));
         return None;
     };
     let settings = file.settings(kind);
@@ -72,7 +74,7 @@ fn check_rate(
     let near = if nearest.len() == 1 { "nearest is" } else { "nearest are" };
     let with = named.first().map_or(String::new(), |filter| format!(" with its filter `{}`", filter.name));
     section.reader.warn(format!(
-        "{}: the {part} outputs no {kind} samples at {wanted}{with}: the {near} {}; it is played at {wanted} all the same",
+        "{}: the {part} outputs no {kind} samples at {wanted}{with}: the {near} {}; it plays at {wanted} anyway",
         section.place("rate"),
         nearest.join(" and ")
     ));
@@ -101,7 +103,7 @@ fn named_filter(section: &mut Section<'_>, settings: &Settings, rate: Option<Rat
         let names = names.join(", ");
         section.mistake(
             "filter",
-            format!("`{wanted}` is no setting of the part: choose one of {names}, or give a cut-off"),
+            format!("`{wanted}` is not a setting of the part: choose one of {names}, or give a cut-off"),
         );
         // A name that is wrong has been told: what is read in its place does not matter.
         named = settings.filters[..1].to_vec();
@@ -174,10 +176,7 @@ fn resolution(section: &Section<'_>, kind: SensorKind, preset: &Table, scales: &
         let ranges: Vec<_> = scales.iter().map(|scale| scale.range.as_str()).collect();
         section.mistake(
             "range",
-            format!(
-                "the part has no such range: choose one of {}, or give a `resolution` beside it",
-                ranges.join(", ")
-            ),
+            format!("the part has no such range: choose one of {}, or add a `resolution`", ranges.join(", ")),
         );
         return None;
     };

@@ -113,7 +113,7 @@ pub(super) fn reference(
         section.has("method");
         for key in ["rate", "tolerance"] {
             if section.has(key) {
-                section.mistake(key, "goes with from = \"gyro\": accel-mag has no steps");
+                section.mistake(key, "needs from = \"gyro\": accel-mag has no steps");
             }
         }
         sensors.and_then(|sensors| of_accel_mag(&section, sensors, trajectory))
@@ -137,21 +137,24 @@ fn stepping(section: &Section<'_>) -> Option<Stepping> {
     let name = section.text("method", Some(DEFAULT))?;
     if name == AUTO {
         if section.has("rate") {
-            section.mistake("rate", "goes with a method by name: `auto` chooses the rate, too");
+            section.mistake("rate", "needs a named method: `auto` chooses the rate itself");
         }
         return section
             .scalar("tolerance", Kind::ANGLE.signed(Sign::Positive), Some(TOLERANCE))
             .map(Stepping::Within);
     }
     if section.has("tolerance") {
-        section.mistake("tolerance", format!("goes with method = \"{AUTO}\": `{name}` errs as it errs"));
+        section.mistake(
+            "tolerance",
+            format!("needs method = \"{AUTO}\": `{name}` does not adapt to a tolerance"),
+        );
     }
     let rate = section.has("rate").then(|| section.rate("rate", None));
     let method = find(&name);
     if method.is_none() {
         let names: Vec<_> = METHODS.iter().map(|method| method.name).chain([AUTO]).collect();
         let near = suggest::did_you_mean(&name, names.iter().copied());
-        section.mistake("method", format!("`{name}` is no method ({}){near}", names.join(", ")));
+        section.mistake("method", format!("`{name}` is not a method ({}){near}", names.join(", ")));
     }
     match rate {
         // What is wrong with it has been said.

@@ -70,7 +70,7 @@ impl<'r> Section<'r> {
             let is = entry.node.value.what();
             self.mistake(
                 key,
-                format!("is {is}, but a scene may have several: write each as a table of its own, [[{key}]]"),
+                format!("is {is}, but a scene can have several: write each as its own table, [[{key}]]"),
             );
             return Vec::new();
         };
@@ -84,7 +84,7 @@ impl<'r> Section<'r> {
                     let is = other.what();
                     self.note(
                         &node.place,
-                        format!("`{key}` holds {is}: write each as a table of its own, [[{key}]]"),
+                        format!("`{key}` holds {is}: write each as its own table, [[{key}]]"),
                     );
                 }
             }

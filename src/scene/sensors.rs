@@ -77,7 +77,7 @@ fn mount(section: &Section<'_>) -> Option<Mount> {
             let name = section.text("mount", None)?;
             let mount = Mount::from_name(&name);
             if mount.is_none() {
-                section.mistake("mount", format!("`{name}` is no right-handed mount: three letters say where the chip's x, y and z point, out of f(orward), b(ack), r(ight), l(eft), u(p) and d(own), such as \"flu\" or \"frd\""));
+                section.mistake("mount", format!("`{name}` is not a right-handed mount: three letters say where the chip's x, y and z point, out of f(orward), b(ack), r(ight), l(eft), u(p) and d(own), such as \"flu\" or \"frd\""));
             }
             mount
         }

@@ -11,13 +11,13 @@ pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
     }
     let answer = match key {
         "angle_random_walk" if path == "accel" => {
-            "is a gyro's; an accelerometer has a `velocity_random_walk`"
+            "belongs to a gyro; an accelerometer has `velocity_random_walk`"
         }
         "velocity_random_walk" if path == "gyro" => {
-            "is an accelerometer's; a gyro has an `angle_random_walk`"
+            "belongs to an accelerometer; a gyro has `angle_random_walk`"
         }
         "angle_random_walk" | "velocity_random_walk" if path == "mag" => {
-            "has no meaning for a magnetometer: give a `noise_density`, which is √2 times the Allan deviation at 1 s"
+            "does not apply to a magnetometer: give `noise_density`, which is √2 times the Allan deviation at 1 s"
         }
         "gyroscope_noise_density" => {
             "is Kalibr's name; here it is `angle_random_walk` in [gyro] (Kalibr's densities are two-sided)"
@@ -47,10 +47,10 @@ pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
         "TemperatureBias" => "is MATLAB's name; here it is `bias_temperature`",
         "TemperatureScaleFactor" => "is MATLAB's name; here it is `scale_temperature`",
         "AccelerationBias" => "is MATLAB's name; here it is `g_sensitivity`",
-        "hard_iron" | "soft_iron" if path != "mag" => "is a magnetometer's",
-        "g_sensitivity" if path != "gyro" => "is a gyro's",
-        "lever_arm" if path != "accel" => "is an accelerometer's",
-        "vibration" => "is of a gyro or an accelerometer",
+        "hard_iron" | "soft_iron" if path != "mag" => "belongs to a magnetometer",
+        "g_sensitivity" if path != "gyro" => "belongs to a gyro",
+        "lever_arm" if path != "accel" => "belongs to an accelerometer",
+        "vibration" => "belongs to a gyro or an accelerometer",
         _ => return None,
     };
     Some(answer)
@@ -60,7 +60,7 @@ pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
 pub fn instead(key: &str, text: &str) -> &'static str {
     let endless = text.to_lowercase().contains("inf") || text.contains('∞');
     if key == "correlation_time" && endless {
-        ": a bias that never forgets is `bias_random_walk`"
+        ": for a bias without bound use `bias_random_walk`"
     } else {
         ""
     }

@@ -226,7 +226,7 @@ fn read(sweep: &Entry) -> Result<Vec<Swept>, Vec<Mistake>> {
     if mistakes.is_empty() && combinations(&swept).is_none() {
         let factors: Vec<_> = swept.iter().map(|swept| swept.takes.length().to_string()).collect();
         let message = format!(
-            "the lists have {} combinations, more than can be counted in 64 bits: sweep fewer keys, or draw some of them, {{ uniform = [low, high] }}",
+            "the lists have {} combinations, more than 64 bits can count: sweep fewer keys, or draw some of them, {{ uniform = [low, high] }}",
             factors.join(" x ")
         );
         mistakes.push(Mistake { place: sweep.node.place.clone(), message });
@@ -258,14 +258,14 @@ const DISTRIBUTIONS: [&str; 2] = ["uniform", "normal"];
 
 fn takes(key: &str, node: &Node) -> Result<Takes, String> {
     if key == "seed" || key.starts_with("sweep") {
-        return Err(format!("`{key}` cannot be swept: each run has a seed of its own"));
+        return Err(format!("`{key}` cannot be swept: each run has its own seed"));
     }
     let plain = "write a list, [\"1 kHz\", \"2 kHz\"], or { uniform = [low, high] }";
     match &node.value {
         Value::Array(nodes) if !nodes.is_empty() => Ok(Takes::List(nodes.clone())),
         Value::Array(_) => Err(format!("`{key}` has no values: {plain}")),
         Value::Table(table) => uniform(table).ok_or_else(|| {
-            format!("`{key}` is drawn from {{ uniform = [low, high] }}, two numbers of one unit, the lower first, such as {{ uniform = [\"1 deg/s\", \"2 deg/s\"] }}")
+            format!("`{key}` takes {{ uniform = [low, high] }}: two numbers with the same unit, the lower first, such as {{ uniform = [\"1 deg/s\", \"2 deg/s\"] }}")
         }),
         other => Err(format!("`{key}` is {}: {plain}", other.what())),
     }
@@ -382,7 +382,7 @@ mod tests {
         for (sweep, place, says) in [
             ("\"gyro.noise_std\" = \"1 deg/s\"\n", "test:6:20", "write a list"),
             ("\"gyro.noise_std\" = []\n", "test:6:20", "no values"),
-            ("\"gyro.noise_std\" = { uniform = [\"1 deg/s\", \"2 rad/s\"] }\n", "test:6:20", "one unit"),
+            ("\"gyro.noise_std\" = { uniform = [\"1 deg/s\", \"2 rad/s\"] }\n", "test:6:20", "the same unit"),
             ("\"gyro.noise_std\" = [\"1 deg/s\", \"2 m/s\"]\n", "test:6:35", "2 m/s"),
             ("\"gyro.nois_std\" = [\"1 deg/s\"]\n", "test:6:20", "noise_std"),
             ("gyro.noise_std = { normal = [\"1 deg/s\", \"2 deg/s\"] }\n", "test:6:18", "uniform"),

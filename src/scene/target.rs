@@ -18,11 +18,11 @@ pub struct Target {
     pub link: Option<&'static str>,
     /// The speed of a serial port that was given none.
     pub baud: Option<u32>,
-    /// The vehicle is held still for so long at the least, and until its estimator is up.
+    /// The vehicle is held still for at least this long, and until its estimator is up.
     pub rest: SimTime,
     /// Samples a second that it takes at most, Hz.
     pub most_hz: Option<u32>,
-    /// The scene it is sent unless another is named.
+    /// The scene it is sent by default.
     pub scene: &'static str,
     /// What that scene is set to, as by `--set`.
     pub settings: &'static [&'static str],
@@ -34,7 +34,7 @@ pub struct Target {
 pub static TARGETS: [Target; 4] = [
     Target {
         name: "px4",
-        about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, stamped on arrival",
+        about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
         protocol: Protocol::Mavlink,
         controller: Controller::Px4,
         link: None,
@@ -43,11 +43,11 @@ pub static TARGETS: [Target; 4] = [
         most_hz: None,
         scene: "level-then-turn",
         settings: &[],
-        asks: "ATTITUDE, ATTITUDE_QUATERNION, and the parameters that decide whether it hears",
+        asks: "ATTITUDE, ATTITUDE_QUATERNION, and the parameters that decide whether it accepts them",
     },
     Target {
         name: "px4-sitl",
-        about: "PX4 as a program, in lockstep: it connects to us, and runs as fast as it can with --speed max",
+        about: "PX4 as a program, in lockstep: it connects to ratetable and runs as fast as it can with --speed max",
         protocol: Protocol::Mavlink,
         controller: Controller::Px4Sitl,
         link: Some("tcpin:4560"),
@@ -60,7 +60,7 @@ pub static TARGETS: [Target; 4] = [
     },
     Target {
         name: "ardupilot",
-        about: "ArduPilot, whose driver for an external AHRS takes us for a VN-100: start us before its boot",
+        about: "ArduPilot, whose external AHRS driver reads ratetable as a VN-100: start ratetable before it boots",
         protocol: Protocol::Vectornav,
         controller: Controller::Ardupilot,
         link: None,
@@ -70,7 +70,7 @@ pub static TARGETS: [Target; 4] = [
         scene: "level-then-turn",
         // As many as its default baud rate carries; it asks for its own number of packets.
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
-        asks: "nothing: it sets us up, at the rate that EAHRS_RATE says",
+        asks: "nothing: it configures the output at the rate in EAHRS_RATE",
     },
     Target {
         name: "inav",
@@ -93,19 +93,19 @@ impl Target {
         TARGETS.iter().find(|target| target.name == name)
     }
 
-    /// What it stands for, a line each.
+    /// What it sets, a line each.
     pub fn expansion(&self) -> Vec<String> {
         let mut lines = vec![format!("protocol {}", self.protocol.name())];
-        lines.extend(self.link.map(|link| format!("link {link} unless another is given")));
-        lines.extend(self.baud.map(|baud| format!("{baud} baud on a serial port unless another is given")));
+        lines.extend(self.link.map(|link| format!("link {link} by default")));
+        lines.extend(self.baud.map(|baud| format!("{baud} baud on a serial port by default")));
         lines.extend(self.most_hz.map(|hz| format!("at most {hz} samples a second of each sensor")));
         lines.push(match self.rest {
-            SimTime::ZERO => "held still until its estimator is ready".into(),
-            rest => format!("held still for {} s, and until its estimator is ready", rest.0 / NANOS),
+            SimTime::ZERO => "holds still until its estimator is ready".into(),
+            rest => format!("holds still for {} s and until its estimator is ready", rest.0 / NANOS),
         });
         let set = |setting: &&str| format!(" --set '{setting}'");
         let settings: String = self.settings.iter().map(set).collect();
-        lines.push(format!("scene {}{settings} unless another is named", self.scene));
+        lines.push(format!("scene {}{settings} by default", self.scene));
         lines.push(format!("asked for {}", self.asks));
         lines
     }

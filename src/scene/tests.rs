@@ -426,16 +426,13 @@ fn set_overrides_are_read_like_the_file() {
             .unwrap();
     assert_eq!((added.sensors.len(), added.drawn.len(), added.limits[0].0.as_str()), (2, 1, "a<1"));
     for (bad, says) in [
-        ("gyro.rate=8", "--set gyro.rate=8: `rate`: a unit is missing in `8`: write \"8 Hz\" or \"8 kHz\""),
+        ("gyro.rate=8", "--set gyro.rate=8: `rate`: `8` has no unit: write \"8 Hz\" or \"8 kHz\""),
         ("gyro.rat=8 Hz", "--set gyro.rat=8 Hz: `rat` is not a key of [gyro]: did you mean `rate`?"),
-        ("gyro.rate", "--set gyro.rate: is no KEY=VALUE: write, for example, --set gyro.rate='8 kHz'"),
+        ("gyro.rate", "--set gyro.rate: is not KEY=VALUE: write, for example, --set gyro.rate='8 kHz'"),
         ("gyro.rate.x=1", "--set gyro.rate.x=1: `rate` is a string, not a table"),
         ("motion.1.duration=1 s", "--set motion.1.duration=1 s: `motion` has 1 entry, motion.0"),
         ("motion.duration=1 s", "`motion` has 1 entry, motion.0"),
-        (
-            "motion.0=x",
-            "--set motion.0=x: `motion` holds a string: write each as a table of its own, [[motion]]",
-        ),
+        ("motion.0=x", "--set motion.0=x: `motion` holds a string: write each as its own table, [[motion]]"),
     ] {
         let message = set(&scene, &[bad]).unwrap_err();
         assert!(message.contains(says) && message.lines().count() == 1, "{bad}: {message}");

@@ -69,7 +69,7 @@ pub(super) fn earth(top: &Section<'_>) -> Earth {
     let day = section.text("date", None).and_then(|text| {
         let day = Day::parse(&text);
         if day.is_none() {
-            section.mistake("date", format!("`{text}` is no date: write it as in \"2026-11-22\""));
+            section.mistake("date", format!("`{text}` is not a date: write it like \"2026-11-22\""));
         }
         day
     });
@@ -112,10 +112,7 @@ fn modelled_field(section: &Section<'_>, place: Option<earth::Place>, day: Optio
         return earth::default_field();
     };
     if !(-1e3..=850e3).contains(&place.altitude) {
-        section.mistake(
-            "altitude",
-            "the World Magnetic Model reaches from -1 km to 850 km: give `field` itself",
-        );
+        section.mistake("altitude", "the World Magnetic Model covers -1 km to 850 km: give `field` itself");
         return earth::default_field();
     }
     earth::magnetic_field(place, day).unwrap_or_else(|why| {
@@ -199,8 +196,10 @@ fn motion(
     };
     let Some(kind) = motion::KINDS.into_iter().find(|kind| kind.name == name) else {
         let near = suggest::did_you_mean(&name, names);
-        section
-            .mistake("kind", format!("`{name}` is no kind of motion; there are {}{near}", names.join(", ")));
+        section.mistake(
+            "kind",
+            format!("`{name}` is not a kind of motion; the kinds are {}{near}", names.join(", ")),
+        );
         section.allow_everything();
         return None;
     };
@@ -260,7 +259,7 @@ fn too_fast(motion: &dyn Motion) -> Option<String> {
     let bounded = fastest <= FASTEST * (1.0 + 1e-9);
     (!bounded).then(|| {
         let degrees = fastest.to_degrees();
-        format!("this motion turns, or its rate changes, at {degrees:.3e} deg/s, and 1e6 deg/s is the most: a unit may be wrong, or a digit too many")
+        format!("this motion turns, or its rate changes, at {degrees:.3e} deg/s, above the limit of 1e6 deg/s: check its units and digits")
     })
 }
 
@@ -273,7 +272,7 @@ pub(super) fn misfits(trajectory: &Trajectory, axes: Axes) -> Vec<String> {
     };
     let warn = |misfit: &Misfit| {
         format!(
-            "the motion at {} means a velocity of {} when it begins, but the vehicle comes to it with {}: its position drifts by the difference; give the `velocity` of [start]",
+            "the motion at {} starts at a velocity of {}, but the vehicle arrives with {}: position drifts by the difference; set `velocity` in [start]",
             misfit.start,
             text(misfit.meant),
             text(misfit.found)

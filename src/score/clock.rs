@@ -1,4 +1,4 @@
-//! The other side's clock, brought onto ours.
+//! Converts the other side's clock to ours.
 
 /// Times of a clock of its own as times of ours, ns: a straight line through (own, arrival), which takes out its
 /// offset and its drift and leaves the mean of the way here in.

@@ -1,4 +1,4 @@
-//! How alike two rows of angular rates are at every lag at once.
+//! How similar two series of angular rates are, at every lag at once.
 //!
 //! At the lag `l`, `aᵢ` of the one stands beside `bᵢ₊ₗ` of the other. Of the two's sums of squares `A` and `B` and the
 //! matrix `C = Σ aᵢ bᵢ₊ₗᵀ`, all over what both know, `A + B − 2·tr C` is what they differ by; turned by the rotation that
@@ -42,7 +42,7 @@ impl Alike {
         0.5 * self.cells * libm::log(self.floored(self.squares[1]) / self.floored(self.apart))
     }
 
-    /// The share of both's squares that they have in common, 1 at the most.
+    /// The share of both's squares that they have in common, at most 1.
     pub fn share(&self) -> f64 {
         1.0 - self.apart / self.squares[0].min(self.squares[1]).max(f64::MIN_POSITIVE)
     }

@@ -67,10 +67,10 @@ impl Fit {
 }
 
 /// Why no delay follows from a motion.
-pub(super) const TOO_EVEN: &str = "the motion is too even to tell a delay from a constant error";
-const TOO_LOOSE: &str = "the estimate follows the motion too loosely to tell a delay";
-const ALIKE: &str = "several delays agree alike, as those a period of vibration apart do";
-const AT_THE_END: &str = "the best agreement lies at the end of what was searched";
+pub(super) const TOO_EVEN: &str = "the motion is too even to separate a delay from a constant error";
+const TOO_LOOSE: &str = "the estimate follows the motion too loosely to find a delay";
+const ALIKE: &str = "several delays fit equally well, such as those one vibration period apart";
+const AT_THE_END: &str = "the best fit lies at the end of the search range";
 
 /// Pairs of estimates, compared with the truth.
 pub(super) struct Pairs {

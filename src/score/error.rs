@@ -1,4 +1,4 @@
-//! One estimate's error, split as the field does it.
+//! One estimate's error, split into inclination and heading.
 
 use crate::geometry::Attitude;
 use std::f64::consts::{PI, TAU};

@@ -1,4 +1,4 @@
-//! What a series of estimates amounts to.
+//! Summary figures of a series of estimates.
 
 use super::AttitudeError;
 use serde::Serialize;

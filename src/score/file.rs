@@ -1,4 +1,4 @@
-//! Estimates from files: a table with a header, a TUM trajectory, a PX4 ULog; which of them, the file itself says.
+//! Estimates from files: a table with a header, a TUM trajectory or a PX4 ULog, recognised by content.
 
 mod table;
 mod ulog;
@@ -109,7 +109,7 @@ pub fn read_as(path: &Path, reading: &Reading) -> Result<Recorded, FileError> {
 fn no_rotation(q: DQuat) -> Option<String> {
     let length = q.length();
     ((length - 1.0).abs() > 0.02 || !length.is_finite())
-        .then(|| format!("a quaternion of length {length}, but a rotation's is 1"))
+        .then(|| format!("a quaternion of length {length}, but a rotation has length 1"))
 }
 
 #[cfg(test)]

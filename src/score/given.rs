@@ -30,7 +30,7 @@ pub struct Timed {
     pub attitude: Attitude,
 }
 
-/// What becomes of a delay on the truth's clock.
+/// How to treat a delay on the truth's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Delay {
     /// It is taken out where it can be found; what the estimates are as they arrived is told beside.
@@ -66,7 +66,7 @@ pub struct Options {
     pub align: Align,
     /// Which clock.
     pub clock: Clock,
-    /// What becomes of a delay.
+    /// How to treat a delay.
     pub delay: Delay,
     /// From when on the truth is known.
     pub from: SimTime,

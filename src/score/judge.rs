@@ -17,7 +17,7 @@ use glam::DQuat;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unjudged {
     /// None of them is at a time at which the truth is known and estimates count.
-    #[error("no estimate is at a time at which the truth is known")]
+    #[error("no estimate is at a time that the truth covers")]
     NoTruth,
     /// It is not known when they held.
     #[error("{0}")]
@@ -130,7 +130,7 @@ fn figures(
         bench.errors(series, ahead, frames).map(|errors| (errors, ahead, frames))
     };
     let found = placed.delay.filter(|fit| fit.doubt.is_none());
-    let doubt = placed.delay.map_or(Some("there is too little motion in both to tell"), |fit| fit.doubt);
+    let doubt = placed.delay.map_or(Some("there is too little motion in both"), |fit| fit.doubt);
     let out = match bench.options.delay {
         _ if placed.other => None,
         Delay::Given(ns) => Some((ns, None)),

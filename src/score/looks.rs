@@ -1,4 +1,4 @@
-//! The usual mistakes of axes, order and sign: each undone on an estimate that is far off, to see whether it is one.
+//! The usual mistakes of axes, order and sign: each is undone on an estimate that is far off, to see whether it fits.
 
 use crate::geometry::{Axes, Euler, exp};
 use glam::{DQuat, DVec3};

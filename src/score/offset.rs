@@ -1,4 +1,4 @@
-//! Two clocks that have nothing in common, brought together by the motion.
+//! Finds the offset between two unrelated clocks from the motion.
 //!
 //! The angular rates of truth and estimate are compared at every lag at which they overlap ([`Sums`]). The best lag
 //! is that at which the truth tells most of the estimate, in nats: a long overlap that agrees well. It is believed if
@@ -29,7 +29,7 @@ const RIVAL_INFORMATION: f64 = 0.25;
 const RIVAL_APART: f64 = 2.0;
 /// The body's axes may be turned if that brings the two nearer on the grid by so many times.
 const TURNED_APART: f64 = 2.0;
-/// The overlap is this share of the shorter of the two at the least.
+/// The overlap is at least this share of the shorter of the two.
 const LEAST_OVERLAP: f64 = 0.1;
 /// A truth that never turns faster tells nothing of time, rad/s.
 const LEAST_RATE: f64 = 0.01;

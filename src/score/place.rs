@@ -71,7 +71,7 @@ pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>])
         return settle(bench, series, found);
     }
     if bench.options.clock == Clock::Auto && together(bench, series) {
-        let note = "its times begin and end with the truth's, and are taken for them".to_string();
+        let note = "its times start and end with the truth's, so they are taken as the truth's".to_string();
         return Ok(Placed { note: Some(note), ..Placed::on_truths(bench.delay(series, STEP)) });
     }
     indifferent(bench, series, found.as_ref())
@@ -165,8 +165,7 @@ fn indifferent(bench: &Bench<'_>, series: &Series, found: Option<&Match>) -> Res
     };
     let (least, most) = spread(bench, series, offsets.iter().copied());
     if !offsets.is_empty() && least.is_finite() && is_alike(least, most) {
-        let note =
-            "its clock is not known, but whatever it is the figures are the same within 3 %".to_string();
+        let note = "its clock is unknown, but any offset changes the figures by less than 3 %".to_string();
         let ahead = offsets[0];
         return Ok(Placed { other: true, ahead, error: None, certain: false, note: Some(note), delay: None });
     }
@@ -190,9 +189,9 @@ fn why(found: Option<&Match>, least: f64, most: f64) -> String {
             )
         }
         Some(found) if found.doubt == Some(Doubt::Unlike) => {
-            format!("at no offset of its clock does it follow the truth's motion{range}")
+            format!("no clock offset makes it follow the truth's motion{range}")
         }
-        _ => format!("the motion is too even to tell by how much its clock is ahead of the truth's{range}"),
+        _ => format!("the motion is too even to find its clock's offset from the truth's{range}"),
     }
 }
 

@@ -32,13 +32,13 @@ impl Track {
     /// As of [`Track::new`].
     pub fn of(rows: Series) -> Result<Track, TrackError> {
         if rows.len() < 2 {
-            return Err(TrackError(format!("has {} rows, but a truth needs two or more", rows.len())));
+            return Err(TrackError(format!("has {} rows, but a truth needs at least two", rows.len())));
         }
         let times = rows.times();
         match times.windows(2).position(|pair| pair[1] <= pair[0]) {
             None => Ok(Track { rows, gap: i64::MAX }),
             Some(i) => Err(TrackError(format!(
-                "row {} is of {}, which is not after {} of the row before",
+                "row {} has time {}, which is not after {} of the previous row",
                 i + 2,
                 SimTime(times[i + 1]),
                 SimTime(times[i])
@@ -127,7 +127,7 @@ mod tests {
     fn a_table_out_of_order_is_refused_with_its_row() {
         let rows =
             |times: &[i64]| times.iter().map(|&t| (SimTime(t), Attitude::IDENTITY)).collect::<Vec<_>>();
-        assert!(Track::new(rows(&[5])).unwrap_err().to_string().contains("two or more"));
+        assert!(Track::new(rows(&[5])).unwrap_err().to_string().contains("at least two"));
         assert!(Track::new(rows(&[5, 6, 6])).unwrap_err().to_string().starts_with("row 3"));
     }
 }

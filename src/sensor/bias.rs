@@ -1,4 +1,4 @@
-//! Turn-on bias: fixed, or drawn once a run.
+//! Turn-on bias: fixed, or drawn once per run.
 
 use super::{Block, Context, Kinds, Stage, Term, TermKind};
 use crate::double::Double;
@@ -8,7 +8,7 @@ use glam::DVec3;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias",
-    about: "turn-on bias: `bias` plus `bias_std` times a normal number drawn once a run",
+    about: "turn-on bias: `bias` plus `bias_std` times a normal random number drawn once per run",
     serves: Kinds::ALL,
     stage: Stage::Bias,
     needs: &[],
@@ -25,7 +25,7 @@ pub(super) static KIND: TermKind = TermKind {
                 name: "bias_std",
                 takes: Takes::PerAxis(reading.signed(Sign::NonNegative)),
                 default: Some("0"),
-                about: "standard deviation of a turn-on bias drawn once a run and added to `bias`",
+                about: "standard deviation of a turn-on bias drawn once per run and added to `bias`",
             },
         ]
     },

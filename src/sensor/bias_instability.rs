@@ -30,7 +30,7 @@ pub(super) static KIND: TermKind = TermKind {
                 name: "correlation_time",
                 takes: Takes::PerAxis(Kind::TIME.signed(Sign::NonNegative)),
                 default: None,
-                about: "in which the wandering bias forgets all but 1/e of itself",
+                about: "time in which the wandering bias decays to 1/e",
             },
             Key {
                 name: "bias_instability_start",
@@ -50,14 +50,14 @@ pub(super) static KIND: TermKind = TermKind {
                 true => Ok(None),
                 false => Err(KeyError::new(
                     "bias_instability",
-                    "needs a `correlation_time` beside it, such as \"500 s\"; a bias that wanders without bound is `bias_random_walk`",
+                    "needs a `correlation_time` too, such as \"500 s\"; a bias that wanders without bound is `bias_random_walk`",
                 )),
             };
         };
         if tau.min_element() <= 0.0 {
             return Err(KeyError::new(
                 "correlation_time",
-                "a correlation time is above 0; a bias that is new at each sample is white noise, `noise_std`",
+                "a correlation time must be above 0; a bias that is new at each sample is white noise, `noise_std`",
             ));
         }
         if sigma == DVec3::ZERO {

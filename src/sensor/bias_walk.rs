@@ -29,7 +29,7 @@ pub(super) static KIND: TermKind = TermKind {
                 name: "bias_random_walk",
                 takes: Takes::PerAxis(units.bias_walk),
                 default: Some("0"),
-                about: "IEEE 952 rate random walk K: the bias grows as K·√t whatever the rate",
+                about: "IEEE 952 rate random walk K: the bias grows as K·√t at any rate",
             },
         ]
     },

@@ -39,7 +39,7 @@ pub struct Block {
     pub arm: Columns,
     /// The velocity that a GPS receiver reads, m/s in nav axes; empty of any other sensor.
     pub velocity: Columns,
-    /// The true velocity; empty likewise.
+    /// The true velocity; empty in the same case.
     pub true_velocity: Columns,
     /// The part's temperature, °C; empty where the scene does not give it.
     pub temperature: Vec<f64>,

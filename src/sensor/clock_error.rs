@@ -15,13 +15,13 @@ static KEYS: [Key; 2] = [
         name: "offset",
         takes: Takes::Scalar(Kind::RATIO),
         default: Some("0"),
-        about: "by how much it runs fast",
+        about: "how much it runs fast",
     },
     Key {
         name: "jitter",
         takes: Takes::Scalar(Kind::TIME.signed(Sign::NonNegative)),
         default: Some("0"),
-        about: "standard deviation of when a sample is taken",
+        about: "standard deviation of the sampling time",
     },
 ];
 
@@ -41,13 +41,14 @@ pub(super) static KIND: TermKind = TermKind {
                 example: "\"50 ppm\", or { offset = \"50 ppm\", jitter = \"2 us\" }",
             }),
             default: None,
-            about: "of the sensor's own oscillator: its ticks drift against the host",
+            about: "error of the sensor's own oscillator: its ticks drift against the host",
         }]
     },
     build: |values, context| {
         let given = values.table("clock_error").and_then(|table| table.scalar("offset")).unwrap_or_default();
         if clock(values, context.rate).is_none() {
-            let message = format!("an offset of {} % is no clock's: it is within ±10 %", given * 100.0);
+            let message =
+                format!("an offset of {} % is too large for a clock: the limit is ±10 %", given * 100.0);
             return Err(KeyError::new("clock_error", message));
         }
         Ok((jitter(values) > 0.0).then(|| Box::new(Jitter) as Box<dyn Term>))
@@ -66,7 +67,7 @@ pub fn clock(values: &Values, rate: Rate) -> Option<Rate> {
     }
 }
 
-/// The standard deviation of when a sample is taken, s.
+/// The standard deviation of the sampling time, s.
 pub fn jitter(values: &Values) -> f64 {
     values.table("clock_error").and_then(|table| table.scalar("jitter")).unwrap_or_default()
 }

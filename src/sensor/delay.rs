@@ -8,7 +8,7 @@ use crate::time::SimTime;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "delay",
-    about: "what is available at a tick was sensed earlier",
+    about: "the reading available at a tick was sensed earlier",
     serves: Kinds::ALL,
     stage: Stage::Signal,
     needs: &[Column::Late],
@@ -17,7 +17,7 @@ pub(super) static KIND: TermKind = TermKind {
             name: "delay",
             takes: Takes::Duration,
             default: Some("0 s"),
-            about: "between sensing and being available",
+            about: "from sensing until the reading is available",
         }]
     },
     build: |values, _| Ok((delay(values) > SimTime::ZERO).then(|| Box::new(Delay) as Box<dyn Term>)),

@@ -342,7 +342,7 @@ fn flicker_needs_a_size_and_a_band_and_takes_the_place_of_the_gauss_markov_proce
         ("flicker = \"yes\"", "write true or false"),
         (
             "bias_instability = \"1 deg/h\"\nflicker = true\nflicker_band = { from = \"20 Hz\" }",
-            "`from` is below `to`",
+            "`from` below `to`",
         ),
     ] {
         assert!(of(keys).unwrap_err().contains(why), "{keys}: {:?}", of(keys));
@@ -380,7 +380,7 @@ fn a_fast_clock_ticks_early_and_reads_what_is_true_then() {
     }
     let error =
         Plan::parse("duration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\nclock_error = \"20 %\"", "s", "s", &[]);
-    assert!(error.unwrap_err().to_string().contains("within ±10 %"));
+    assert!(error.unwrap_err().to_string().contains("the limit is ±10 %"));
 }
 
 /// A jitter σ in time is an error of σ times how fast the signal changes.

@@ -1,4 +1,4 @@
-//! Faults of a sensor: what it does wrong for a while, after everything else, in the words of PX4's failure injection.
+//! Faults of a sensor: temporary misbehaviour, applied after everything else, in the words of PX4's failure injection.
 //!
 //! A fault acts on the samples of [start, end). Those that withhold samples leave the others on their ticks. Random
 //! ones draw from the stream `fault/N/KIND`, N counting the sensor's faults from 0.
@@ -69,7 +69,7 @@ impl FaultKind {
         match self {
             FaultKind::Off | FaultKind::Stuck | FaultKind::Wrong => vec![],
             FaultKind::Slow => {
-                vec![key("every", Takes::Whole(2, 1_000_000), Some("10"), "one sample in so many")]
+                vec![key("every", Takes::Whole(2, 1_000_000), Some("10"), "one sample in this many")]
             }
             FaultKind::Delayed => vec![key("delay", Takes::Duration, None, "how old a reading is")],
             FaultKind::Intermittent => vec![key("share", share, Some("50 %"), "of the samples is missing")],
@@ -114,14 +114,14 @@ impl Fault {
             }
             FaultKind::Garbage if !has("size") && range.is_none() => {
                 let message =
-                    format!("garbage needs a size, such as \"{example}\", of a sensor without a range");
+                    format!("garbage needs a size, such as \"{example}\", because the sensor has no range");
                 Err(KeyError::new("size", message))
             }
             FaultKind::Delayed if !has("delay") => {
                 Err(KeyError::new("delay", "a delayed sensor needs its delay, such as delay = \"50 ms\""))
             }
             FaultKind::Ramp if self.end == SimTime::FOREVER => {
-                Err(KeyError::new("duration", "a ramp needs its duration, at whose end it has its size"))
+                Err(KeyError::new("duration", "a ramp needs its duration: it reaches its size at the end"))
             }
             _ if self.values.scalar("share").is_some_and(|share| share > 1.0) => {
                 Err(KeyError::new("share", "a share of the samples is at most 100 %"))

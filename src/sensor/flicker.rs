@@ -53,16 +53,13 @@ pub(super) static KIND: TermKind = TermKind {
             return Ok(None);
         }
         if sigma == DVec3::ZERO {
-            return Err(KeyError::new(
-                "flicker",
-                "needs a `bias_instability` beside it, such as \"10 deg/h\"",
-            ));
+            return Err(KeyError::new("flicker", "needs a `bias_instability` too, such as \"10 deg/h\""));
         }
         let band = values.table("flicker_band");
         let end = |key, default| band.and_then(|band| band.scalar(key)).unwrap_or(default);
         let (from, to) = (end("from", 1e-4), end("to", 10.0));
         if from >= to {
-            return Err(KeyError::new("flicker_band", "begins where it ends or later: `from` is below `to`"));
+            return Err(KeyError::new("flicker_band", "needs `from` below `to`"));
         }
         Ok(Some(Box::new(Flicker::new(sigma, from, to, context))))
     },

@@ -1,4 +1,4 @@
-//! Hard iron: what is magnetised on the vehicle adds a field that turns with it: `reading = field + h` (Vasconcelos
+//! Hard iron: magnetised parts of the vehicle add a field that turns with it: `reading = field + h` (Vasconcelos
 //! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
 
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
@@ -17,7 +17,7 @@ pub(super) static KIND: TermKind = TermKind {
             name: "hard_iron",
             takes: Takes::BodyVector(Kind::FIELD),
             default: Some("0"),
-            about: "field of what is magnetised on the vehicle",
+            about: "field of the vehicle's magnetised parts",
         }]
     },
     build: |values, _| {

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "lever_arm",
-    about: "what an accelerometer off the point that moves feels more: dw/dt × r + w × (w × r)",
+    about: "extra acceleration of an accelerometer off the motion's reference point: dw/dt × r + w × (w × r)",
     serves: Kinds::of(&[SensorKind::Accel]),
     stage: Stage::Signal,
     needs: &[Column::LeverArm],
@@ -19,7 +19,7 @@ pub(super) static KIND: TermKind = TermKind {
             name: "lever_arm",
             takes: Takes::BodyVector(Kind::LENGTH),
             default: Some("0"),
-            about: "from the point that moves to the accelerometer",
+            about: "from the motion's reference point to the accelerometer",
         }]
     },
     build: |values, _| Ok(lever_arm(values).map(|_| Box::new(LeverArm) as Box<dyn Term>)),

@@ -23,19 +23,19 @@ pub(super) static KIND: TermKind = TermKind {
                 name: "scale_error",
                 takes: Takes::PerAxis(Kind::RATIO),
                 default: Some("0"),
-                about: "by how much more than the truth an axis reads",
+                about: "how much more than the truth an axis reads",
             },
             Key {
                 name: "misalignment",
                 takes: Takes::BodyVector(Kind::ANGLE),
                 default: Some("0"),
-                about: "the rotation vector by which the sensor's axes are turned against the body's",
+                about: "rotation vector of the sensor's axes relative to the body's",
             },
             Key {
                 name: "matrix",
                 takes: Takes::Matrix(Kind::RATIO),
                 default: None,
-                about: "what an error-free reading is multiplied by, after scale error and misalignment",
+                about: "matrix that multiplies an error-free reading, after scale error and misalignment",
             },
         ]
     },

@@ -1,4 +1,4 @@
-//! Non-linearity: how far a reading bends away from the best straight line.
+//! Non-linearity: the deviation of a reading from the best straight line.
 //!
 //! `reading += n·R·(4u³ − 3u)`, u = signal/R within ±1, on the chip's axes: the odd cubic whose best straight line
 //! (least greatest deviation) is the signal itself and whose greatest deviation is n of full scale R, at ±R/2 and at
@@ -31,7 +31,7 @@ pub(super) static KIND: TermKind = TermKind {
         }
         let Some(range) = values.scalar("range") else {
             let message = format!(
-                "is a part of full scale, so it needs a `range` beside it, such as range = \"{}\"",
+                "is a fraction of full scale, so it also needs a `range`, such as range = \"{}\"",
                 context.sensor.units().reading.example()
             );
             return Err(KeyError::new("nonlinearity", message));

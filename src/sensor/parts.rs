@@ -62,7 +62,7 @@ static PARTS: [Part; 8] = [
     Part {
         names: &["BMI088"],
         inside: &[],
-        about: "six axes for vibrating places, Bosch Sensortec",
+        about: "six axes for high vibration, Bosch Sensortec",
         file: "parts/bmi088.toml",
         text: include_str!("parts/bmi088.toml"),
     },

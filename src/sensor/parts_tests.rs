@@ -219,7 +219,7 @@ fn a_part_inside_another_is_known_for_its_own_sensor_alone() {
             assert_eq!(plan(name, *kind, "", 1).unwrap().sensors[0].part, Some(*name));
             for other in SensorKind::TRIADS.into_iter().filter(|other| other != kind) {
                 let error = plan(name, other, "", 1).unwrap_err();
-                assert!(error.contains("is no part known here"), "{name} as {other}: {error}");
+                assert!(error.contains("is not a known part"), "{name} as {other}: {error}");
             }
         }
     }
@@ -245,7 +245,7 @@ fn every_setting_has_a_source_and_every_filter_a_rate_that_the_part_has() {
         ("[gyro]\nrates = { settings = [] }\n", "x.toml:2:1: `rates` of gyro needs a `source`"),
         (
             "[gyro]\nrates = { source = \"s\", settings = [{ rate = \"3 kg\" }] }\n",
-            "x.toml:2:37: this is no setting",
+            "x.toml:2:37: this is not a setting",
         ),
     ] {
         let part = parts::Part { names: &["X"], inside: &[], about: "", file: "x.toml", text };
@@ -284,7 +284,7 @@ fn a_rate_that_the_part_has_not_is_told_with_its_nearest_ones() {
         assert_eq!(warnings(part, kind, rate, more), [""; 0], "{part} {kind} {rate}");
     }
     for (part, kind, rate, more, says) in [
-        ("MPU-9250", Gyro, "900 Hz", "", "are 500 Hz and 1000 Hz; it is played at 900 Hz all the same"),
+        ("MPU-9250", Gyro, "900 Hz", "", "are 500 Hz and 1000 Hz; it plays at 900 Hz anyway"),
         ("MPU-9250", Gyro, "8 kHz", dlpf_2, "with its filter `DLPF 2`: the nearest is 1000 Hz"),
         ("MPU-9250", Gyro, "500 Hz", "filter = \"DLPF 0\"\n", "the nearest is 8000 Hz"),
         ("MPU-9250", Mag, "50 Hz", "", "no mag samples at 50 Hz: the nearest are 8 Hz and 100 Hz"),
@@ -369,6 +369,6 @@ fn a_named_filter_has_the_bandwidth_and_the_delay_of_the_register_map() {
     let cut_off = plan("MPU-9250", SensorKind::Gyro, "filter = \"33 Hz\"", 1).unwrap();
     assert_eq!(delay(&cut_off.sensors[0].values), SimTime::ZERO);
     let error = plan("MPU-9250", SensorKind::Gyro, "filter = \"DLPF 9\"", 1).unwrap_err();
-    assert!(error.contains("`DLPF 9` is no setting of the part: choose one of DLPF 0, "), "{error}");
+    assert!(error.contains("`DLPF 9` is not a setting of the part: choose one of DLPF 0, "), "{error}");
     assert_eq!(error.lines().count(), 1, "said once: {error}");
 }

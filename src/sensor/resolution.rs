@@ -16,7 +16,7 @@ pub(super) static KIND: TermKind = TermKind {
             name: "resolution",
             takes: Takes::Resolution(sensor.units().resolution),
             default: None,
-            about: "the size of a count (\"0.15 uT\"), counts a unit (\"16.4 LSB/(deg/s)\"), or bits over ± the range (\"16 bit\")",
+            about: "the size of a count (\"0.15 uT\"), counts per unit (\"16.4 LSB/(deg/s)\"), or bits over ± the range (\"16 bit\")",
         }]
     },
     build: |values, context| {
@@ -48,7 +48,7 @@ pub(super) fn converter(values: &Values, sensor: SensorKind) -> Result<Option<Co
         (Resolution::Bits(bits), Some(range)) => range / libm::exp2(f64::from(bits) - 1.0),
         (Resolution::Bits(_), None) => {
             let message = format!(
-                "bits need a `range` beside them; or give the size of a count, such as \"1e-4 {}\"",
+                "bits also need a `range`; or give the size of a count, such as \"1e-4 {}\"",
                 sensor.unit()
             );
             return Err(KeyError::new("resolution", message));

@@ -79,7 +79,7 @@ fn a_matrix_comes_after_scale_error_and_misalignment_and_may_be_written_four_way
     near(both, [1.08, 4.0, 2.99], 1e-15);
     for (bad, why) in [
         ("matrix = [[1, 0, 0], [0, 1, 0]]", "2 rows"),
-        ("matrix = \"[[1, 0, 0], [0, 1, 0]]\"", "3 rows of 3 values, here are 2"),
+        ("matrix = \"[[1, 0, 0], [0, 1, 0]]\"", "3 rows of 3 values, not 2"),
         ("matrix = [[1, 0], [0, 1, 0], [0, 0, 1]]", "a vector has 3 values"),
         ("matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 0]]", "no inverse"),
         ("scale_error = \"-100 %\"", "no inverse"),

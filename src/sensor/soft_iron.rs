@@ -1,4 +1,4 @@
-//! Soft iron: magnetised by the field it is in, it stretches and turns that field: `reading = M·field` (Vasconcelos
+//! Soft iron, magnetised by the surrounding field, stretches and turns that field: `reading = M·field` (Vasconcelos
 //! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
 
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind, linear};
@@ -17,7 +17,7 @@ pub(super) static KIND: TermKind = TermKind {
             name: "soft_iron",
             takes: Takes::Matrix(Kind::RATIO),
             default: None,
-            about: "what the field around the magnetometer is multiplied by; 1 without soft iron",
+            about: "matrix that multiplies the field around the magnetometer; identity without soft iron",
         }]
     },
     build: |values, _| {

@@ -23,19 +23,19 @@ static KEYS: [Key; 3] = [
         name: "rise",
         takes: Takes::Scalar(Kind::TEMPERATURE_DIFFERENCE),
         default: Some("0 K"),
-        about: "by how much it ends up warmer",
+        about: "the total temperature rise",
     },
     Key {
         name: "time_constant",
         takes: Takes::Scalar(Kind::TIME.signed(Sign::Positive)),
         default: None,
-        about: "in which all but 1/e of the rise has come",
+        about: "after which all but 1/e of the rise is done",
     },
 ];
 
 pub(super) static KIND: TermKind = TermKind {
     name: "temperature",
-    about: "the part's temperature: what its coefficients act on and its packets report",
+    about: "the part's temperature: its coefficients use it and its packets report it",
     serves: Kinds::BY_COMPONENT,
     stage: Stage::Signal,
     needs: &[],
@@ -46,10 +46,10 @@ pub(super) static KIND: TermKind = TermKind {
                 keys: &KEYS,
                 alone: Some("ambient"),
                 many: false,
-                example: "\"35 degC\", or { ambient = \"25 degC\", rise = \"15 K\", time_constant = \"60 s\" } for one that warms up",
+                example: "\"35 degC\", or { ambient = \"25 degC\", rise = \"15 K\", time_constant = \"60 s\" } for a part that warms up",
             }),
             default: None,
-            about: "the part's temperature (25 degC without it)",
+            about: "the part's temperature (default 25 degC)",
         }]
     },
     build: |values, context| {
@@ -58,7 +58,7 @@ pub(super) static KIND: TermKind = TermKind {
         let (ambient, rise) = (ambient.unwrap_or(REFERENCE), rise.unwrap_or_default());
         let tau = given.scalar("time_constant");
         if rise != 0.0 && tau.is_none() {
-            let message = "a rise needs a `time_constant` beside it, such as \"60 s\"";
+            let message = "a rise also needs a `time_constant`, such as \"60 s\"";
             return Err(KeyError::new("temperature", message));
         }
         Ok(Some(Box::new(Warming::new(ambient, rise, tau.unwrap_or(1.0), context))))

@@ -299,7 +299,7 @@ fn two_spellings_of_white_noise_share_out_the_axes_but_never_meet() {
     let three = keys.replace("[0, 0, 0.1]", "[0.1, 0, 0.1]");
     let text = format!("duration = \"1 s\"\n[gyro]\nrate = \"1 Hz\"\n{three}");
     let error = Plan::parse(&text, "s", "s", &[]).unwrap_err().to_string();
-    assert!(error.contains("given by `noise_std` already"), "the first meets the third: {error}");
+    assert!(error.contains("already given by `noise_std`"), "the first meets the third: {error}");
 }
 
 #[test]

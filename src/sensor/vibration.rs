@@ -66,7 +66,7 @@ static ACCEL: [Key; 7] = keys(Kind::ACCELERATION, Kind::ACCEL_SPECTRUM, &ACCEL_P
 
 pub(super) static KIND: TermKind = TermKind {
     name: "vibration",
-    about: "sines felt beside the motion, or random ones by their spectrum",
+    about: "vibration added to the motion: sines, or random by spectrum",
     serves: Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]),
     stage: Stage::Signal,
     needs: &[],
@@ -143,7 +143,7 @@ fn profile(points: &[Values]) -> Result<Vec<Point>, KeyError> {
         return wrong("each point of a `spectrum` has its `frequency` and its `density`".into());
     };
     if points.len() < 2 {
-        return wrong("a `spectrum` has two points at least".into());
+        return wrong("a `spectrum` needs at least two points".into());
     }
     for pair in points.windows(2) {
         let [(from, low), (to, high)] = [pair[0], pair[1]];
@@ -154,7 +154,7 @@ fn profile(points: &[Values]) -> Result<Vec<Point>, KeyError> {
         }
         if (0..3).any(|axis| (low[axis] == 0.0) != (high[axis] == 0.0)) {
             return wrong(format!(
-                "a `spectrum` is 0 on an axis everywhere or nowhere, but not so from {from} to {to} Hz"
+                "a `spectrum` must be 0 on an axis everywhere or nowhere, but it changes from {from} to {to} Hz"
             ));
         }
     }

@@ -1,9 +1,9 @@
-//! White noise: a fresh normal number each sample.
+//! White noise: a new normal random number each sample.
 //!
 //! Its size may be given per sample (`noise_std`, `noise_variance`: the paper), as a one-sided density N
 //! (`noise_density`, what part datasheets print: σ = N·√(fs/2)), or as the Allan deviation at 1 s
 //! (`angle_random_walk`, `velocity_random_walk`, what Kalibr calls a noise density: σ = N·√fs).
-//! `noise_density = √2 · random walk`: the factor on which users of every tool trip.
+//! `noise_density = √2 · random walk`: a factor that users often miss.
 
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::keys::{Key, KeyError, Takes, Values};
@@ -14,7 +14,7 @@ use glam::DVec3;
 
 pub(super) static KIND: TermKind = TermKind {
     name: "white_noise",
-    about: "a fresh normal number each sample",
+    about: "a new normal random number each sample",
     serves: Kinds::ALL,
     stage: Stage::Reading,
     needs: &[],
@@ -24,9 +24,9 @@ pub(super) static KIND: TermKind = TermKind {
             key(
                 "noise_std",
                 units.reading.signed(Sign::NonNegative),
-                "standard deviation of each sample, whatever the rate",
+                "standard deviation of each sample, at any rate",
             ),
-            key("noise_variance", units.variance, "variance of each sample, whatever the rate (the paper's)"),
+            key("noise_variance", units.variance, "variance of each sample, at any rate (the paper's)"),
             key("noise_density", units.density, "one-sided density, as datasheets print it: σ = N·√(rate/2)"),
         ];
         if let Some((name, kind)) = units.random_walk {
@@ -66,7 +66,7 @@ pub fn sigma(values: &Values, sensor: SensorKind, rate: Rate) -> Result<DVec3, K
         if let Some((other, _)) = before.iter().find(|(_, other)| clash(*other)) {
             return Err(KeyError::new(
                 key,
-                format!("the {sensor}'s white noise is given by `{other}` already: keep one of the two"),
+                format!("the {sensor}'s white noise is already given by `{other}`: keep only one"),
             ));
         }
         before.push((key, given));

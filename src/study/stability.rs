@@ -20,7 +20,7 @@ pub struct Row {
     pub method: &'static str,
     /// The case's name.
     pub case: &'static str,
-    /// What became of it.
+    /// How it did.
     pub verdict: Verdict,
     /// In the unit that the case's description names; infinite where no attitude came out.
     pub figure: f64,
@@ -28,7 +28,7 @@ pub struct Row {
     pub first_failing_step: Option<u64>,
 }
 
-/// What became of a method in a case.
+/// How a method did in a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// What parts two cells: the semicolon, then the likelier of comma and tab; a space stands for any white space.
+/// What parts two cells: the semicolon, then the likelier of comma and tab; a space means any white space.
 pub(super) fn delimiter(line: &str) -> u8 {
     let count = |delimiter: u8| line.bytes().filter(|byte| *byte == delimiter).count();
     let (commas, tabs) = (count(b','), count(b'\t'));
@@ -99,7 +99,7 @@ pub(super) enum Cell {
     Word,
 }
 
-/// Reads a cell; with `comma` a comma stands for the decimal point.
+/// Reads a cell; with `comma` a comma is the decimal point.
 pub(super) fn cell(text: &str, comma: bool) -> Cell {
     let text = text.trim();
     let number = match comma && text.contains(',') && !text.contains('.') {

@@ -30,12 +30,12 @@ const fn kind(name: &'static str, help: &'static str) -> Kind {
 pub(super) const KITTI: Kind = Kind {
     name: "a file of KITTI poses",
     by: "its twelve numbers a row without a header",
-    help: "it has no times: write time and quaternion beside each other, as a TUM trajectory `t x y z qx qy qz qw`",
+    help: "it has no times: add them, as in a TUM trajectory `t x y z qx qy qz qw`",
 };
 
 const DATAFLASH: Kind = kind("an ArduPilot DataFlash log (.BIN)", MAVLOGDUMP);
 const TLOG: Kind = kind("a MAVLink log with times (.tlog)", MAVLOGDUMP);
-const MAVLINK: Kind = kind("a recording of raw MAVLink", "a .tlog has the times that it lacks");
+const MAVLINK: Kind = kind("a recording of raw MAVLink", "record a .tlog instead, which has times");
 const ULOG: Kind = kind("a PX4 ULog", "pyulog's `ulog2csv -m vehicle_attitude` makes a table of it");
 const UTF16: Kind = kind("text in UTF-16", "save it as UTF-8");
 
@@ -74,10 +74,10 @@ const MAGICS: &[(&[u8], Kind)] = &[
         ),
     ),
     (b"\xd0\xcf\x11\xe0", kind("an old Excel file (.xls)", "save its sheet as CSV")),
-    (b"%PDF-", kind("a PDF", "it holds no numbers to read")),
-    (b"\x89PNG\r\n\x1a\n", kind("a PNG picture", "it holds no numbers to read")),
-    (b"\xff\xd8\xff", kind("a JPEG picture", "it holds no numbers to read")),
-    (b"\x7fELF", kind("a program", "it holds no numbers to read")),
+    (b"%PDF-", kind("a PDF", "it holds no numbers")),
+    (b"\x89PNG\r\n\x1a\n", kind("a PNG picture", "it holds no numbers")),
+    (b"\xff\xd8\xff", kind("a JPEG picture", "it holds no numbers")),
+    (b"\x7fELF", kind("a program", "it holds no numbers")),
     (b"\xff\xfe", UTF16),
     (b"\xfe\xff", UTF16),
 ];

@@ -1,4 +1,4 @@
-//! Rows that are left out, counted and told.
+//! Rows that are left out, counted and reported.
 
 /// How many rows are left out, and why.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -74,9 +74,9 @@ impl Rows {
         let LeftOut { duplicate, overtaken, ahead, not_finite, zero } = self.left_out;
         let all = self.left_out.count();
         let reasons = [
-            (duplicate, "with the time of the row before", self.first[0]),
-            (overtaken, "older than the newest before", self.first[1]),
-            (ahead, "ahead of all that follow", self.first[2]),
+            (duplicate, "with the time of the previous row", self.first[0]),
+            (overtaken, "older than an earlier row", self.first[1]),
+            (ahead, "later than all rows after it", self.first[2]),
             (not_finite, "without a finite value", self.first[3]),
             (zero, "with a quaternion of zeros", self.first[4]),
         ];
@@ -90,7 +90,11 @@ impl Rows {
         };
         let reasons: Vec<_> = reasons.into_iter().filter_map(reason).collect();
         let verb = if all == 1 { "is" } else { "are" };
-        let coarse = if 2 * duplicate > self.read { "; its time is coarser than its rows" } else { "" };
+        let coarse = if 2 * duplicate > self.read {
+            "; its time resolution is coarser than its row interval"
+        } else {
+            ""
+        };
         (all > 0)
             .then(|| format!("{all} of {} rows {verb} left out: {}{coarse}", self.read, reasons.join(", ")))
     }

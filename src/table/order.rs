@@ -1,13 +1,13 @@
-//! Which rows keep to the order of time, and where a clock begins anew.
+//! Which rows are in time order, and where a clock restarts.
 //!
 //! A row with the time of the newest before it is a duplicate. One that is older, while within a few rows time goes on
-//! from the newest, was overtaken on its way. One to three rows that are ahead of all that follow them are ahead. Any
-//! other step back is a clock that was set or begins anew. A counter of 32 bits that wraps goes on.
+//! from the newest, was overtaken on its way. One to three rows that are later than all rows after them are ahead. Any
+//! other step back is a clock that was set or restarted. A 32-bit counter that wraps continues.
 
 use super::TimeUnit;
 use super::times::TICKS;
 
-/// What becomes of a row.
+/// The fate of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fate {
     Kept,
@@ -20,9 +20,9 @@ pub(super) enum Fate {
 
 /// As many rows may be overtaken before time goes on.
 const FEW: usize = 8;
-/// As many rows may be ahead of all that follow.
+/// As many rows may be later than all rows after it.
 const AHEAD: usize = 3;
-/// Where a counter of 32 bits begins anew.
+/// Where a 32-bit counter wraps.
 const TURN: i128 = (1 << 32) * TICKS;
 
 /// Undoes the wraps of a counter of 32 bits, of whole ms, µs or ns; the rows after which it wrapped.
@@ -50,7 +50,7 @@ pub(super) fn unwrap(ticks: &mut [i128], unit: Option<TimeUnit>) -> Vec<usize> {
     wraps
 }
 
-/// What becomes of each row.
+/// The fate of each row.
 pub(super) fn fates(ticks: &[i128]) -> Vec<Fate> {
     let mut fates = vec![Fate::Kept; ticks.len()];
     // Of the clock that runs.

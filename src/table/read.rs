@@ -24,7 +24,7 @@ const COMMENTS: usize = 64;
 pub struct Table<R> {
     pub(super) columns: Columns,
     delimiter: u8,
-    /// Whether a comma stands for the decimal point.
+    /// Whether a comma is the decimal point.
     pub(super) comma: bool,
     /// Rows that were read to find the header.
     held: VecDeque<Numbered>,
@@ -100,13 +100,13 @@ impl<R: BufRead> Table<R> {
         }
         if held.iter().all(Numbered::is_comment) {
             return Err(TableError::Content(format!(
-                "{name} is empty: a header and rows of numbers are needed"
+                "{name} is empty: it needs a header and rows of numbers"
             )));
         }
         let count = |line: &Numbered| cells::count(&line.text, cells::delimiter(&line.text));
         if let Some(line) = held.iter().find(|line| !line.is_comment() && count(line) > WIDE) {
             return Err(TableError::Content(format!(
-                "{name}:{} has {} columns, more than the {WIDE} that are looked at",
+                "{name}:{} has {} columns, above the limit of {WIDE}",
                 line.number,
                 count(line)
             )));
@@ -254,7 +254,7 @@ impl<R: BufRead> Table<R> {
             *value = match cells::cell(self.text(column), self.comma) {
                 Cell::Number(number) => number,
                 Cell::Missing => f64::NAN,
-                Cell::Word => return Err((Some(column), format!("`{}` is no number", self.text(column)))),
+                Cell::Word => return Err((Some(column), format!("`{}` is not a number", self.text(column)))),
             };
         }
         Ok(Row { line: self.line.number, ticks, values })
@@ -268,7 +268,9 @@ impl<R: BufRead> Table<R> {
             match (ticks, cells::cell(text, self.comma)) {
                 (Some(ticks), _) => Ok(Some(ticks)),
                 (None, Cell::Missing) => Ok(None),
-                _ => Err((Some(column), format!("`{text}` is no time: write a number of s, ms, us or ns"))),
+                _ => {
+                    Err((Some(column), format!("`{text}` is not a time: write a number in s, ms, us or ns")))
+                }
             }
         };
         let whole = of(time.column)?;

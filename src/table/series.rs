@@ -1,4 +1,4 @@
-//! All rows of a table that can be used, in order.
+//! All usable rows of a table, in order.
 
 use super::cells::{self, Cell};
 use super::choice::Clock;
@@ -55,7 +55,7 @@ impl<R: BufRead> Table<R> {
                 Next::End => break,
                 // A log whose writer lost its power.
                 Next::Mistake(mistake) if self.breaks_off() => {
-                    let what = format!("the last row, line {}, breaks off and is left out", mistake.line);
+                    let what = format!("the last row, line {}, is truncated and is left out", mistake.line);
                     series.remarks.push(what);
                     continue;
                 }
@@ -130,7 +130,7 @@ impl<T> Series<T> {
         }
         let (line, count, rows) = (self.lines[breaks[0]], breaks.len(), self.rows.read);
         Err(TableError::Content(format!(
-            "{file}:{line}: its times are in no order: in {rows} rows they step back {count} times"
+            "{file}:{line}: its times are not in order: they step back {count} times in {rows} rows"
         )))
     }
 
@@ -160,7 +160,7 @@ impl<T> Series<T> {
         let wraps = order::unwrap(&mut self.times.ticks, time.unit);
         if let Some(first) = wraps.first() {
             let line = self.lines[*first];
-            self.remarks.push(format!("its time wraps at 2^32 in line {line} and is counted on"));
+            self.remarks.push(format!("its time wraps at 2^32 at line {line} and is unwrapped"));
         }
         let fates = order::fates(&self.times.ticks);
         let mut kept = 0;

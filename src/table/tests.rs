@@ -28,7 +28,7 @@ fn bad_rows_are_left_out_counted_and_told_with_their_first_line() {
     assert_eq!(series.values[1], [1.0, 0.0, 0.0, 0.0], "the first of two with one time is kept");
     let told = series.rows.told().unwrap();
     assert!(
-        told.starts_with("6 of 10 rows are left out: 1 with the time of the row before (line 6)"),
+        told.starts_with("6 of 10 rows are left out: 1 with the time of the previous row (line 6)"),
         "{told}"
     );
     assert!(told.contains("3 without a finite value (first in line 3)"), "{told}");
@@ -40,9 +40,9 @@ fn a_word_is_a_mistake_with_its_place_and_of_many_the_first_few_are_listed() {
     let rows: String = (0..9).map(|k| format!("{k},1,what,0,0\n")).collect();
     let error = attitudes(&format!("t_s,qw,qx,qy,qz\n{rows}"), &Choice::default()).unwrap_err();
     let message = error.to_string();
-    assert!(message.starts_with("x.csv:2: column qx: `what` is no number\nx.csv:3: "), "{message}");
+    assert!(message.starts_with("x.csv:2: column qx: `what` is not a number\nx.csv:3: "), "{message}");
     assert!(message.lines().count() == 6 && message.ends_with("and 4 more rows"), "{message}");
-    assert_eq!(error.in_short(), "x.csv:2: column qx: `what` is no number (and 8 more rows like it)");
+    assert_eq!(error.in_short(), "x.csv:2: column qx: `what` is not a number (and 8 more rows like it)");
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn a_last_row_that_breaks_off_is_left_out_and_any_other_short_row_is_a_mistake()
     let text = "t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,0,0\n2,1,0";
     let series = read(text);
     assert_eq!((series.values.len(), series.rows.read), (2, 2));
-    assert_eq!(series.remarks, ["the last row, line 4, breaks off and is left out"]);
+    assert_eq!(series.remarks, ["the last row, line 4, is truncated and is left out"]);
     for bad in [format!("{text}\n"), format!("{text}\n3,1,0,0,0"), format!("{text},0,0,0")] {
         let error = attitudes(&bad, &Choice::default()).unwrap_err().to_string();
         assert!(error.starts_with("x.csv:4: the row has "), "{bad}: {error}");
@@ -69,11 +69,11 @@ fn a_restart_is_a_break_and_a_wrap_is_none() {
     assert_eq!((series.times.breaks.len(), series.rows.left_out.count()), (0, 0));
     let ns = series.times.in_ns(TimeUnit::Ms).unwrap();
     assert!(ns.windows(2).all(|pair| pair[1] - pair[0] == 10_000_000), "{ns:?}");
-    assert!(series.remarks[0].contains("wraps at 2^32 in line 22"), "{:?}", series.remarks);
+    assert!(series.remarks[0].contains("wraps at 2^32 at line 22"), "{:?}", series.remarks);
     // Newest first: that is no table of times.
     let backwards = of(&mut (0..40).rev());
     let error = attitudes(&format!("t_s,qw,qx,qy,qz\n{backwards}"), &Choice::default()).unwrap_err();
-    assert!(error.to_string().starts_with("x.csv:3: its times are in no order"), "{error}");
+    assert!(error.to_string().starts_with("x.csv:3: its times are not in order"), "{error}");
 }
 
 #[test]
@@ -221,7 +221,7 @@ fn a_table_of_absurdly_many_columns_is_refused_at_once() {
     let row = |count: usize| "0,".repeat(count) + "0,1,0,0,0";
     let text = |count: usize| format!("{}\n{}\n", wide(count), row(count));
     let error = Table::open("x.csv", text(200_000).as_bytes()).unwrap_err().to_string();
-    assert_eq!(error, "x.csv:1 has 200005 columns, more than the 1024 that are looked at");
+    assert_eq!(error, "x.csv:1 has 200005 columns, above the limit of 1024");
     assert_eq!(read(&text(1000)).values, [[1.0, 0.0, 0.0, 0.0]], "and many are no hindrance");
     // A comment may be as long as it likes.
     let comment = format!("# {}\nt_s,qw,qx,qy,qz\n0,1,0,0,0\n", "a, ".repeat(100_000));

@@ -52,7 +52,7 @@ impl FromStr for TimeUnit {
 
     fn from_str(text: &str) -> Result<TimeUnit, String> {
         let unit = TimeUnit::ALL.into_iter().find(|unit| unit.name() == text);
-        unit.ok_or_else(|| format!("`{text}` is no unit of time here: write s, ms, us or ns"))
+        unit.ok_or_else(|| format!("`{text}` is not a unit of time here: write s, ms, us or ns"))
     }
 }
 

@@ -127,12 +127,12 @@ fn limits_hold_for_what_faults_did_and_mistakes_are_placed() {
     }
     let output = "[[output]]\nto = \"mpu@pty\"\n";
     for (fault, why) in [
-        ("kind = \"drop\"\nsensor = \"gyro\"", "drop happens to packets"),
-        ("kind = \"off\"\noutput = 0\nsensor = \"gyro\"", "off is a fault of a sensor"),
-        ("kind = \"drop\"\noutput = 1", "names none of the scene's outputs, which are 0 \"mpu@pty\""),
-        ("kind = \"drop\"\noutput = \"mpu@/dev/ttyACM0\"", "names none of the scene's outputs"),
-        ("kind = \"drop\"\noutput = \"nothing\"", "is no PROTOCOL@LINK"),
-        ("kind = \"drop\"\noutput = true", "its place in the scene from 0 on"),
+        ("kind = \"drop\"\nsensor = \"gyro\"", "drop is a packet fault"),
+        ("kind = \"off\"\noutput = 0\nsensor = \"gyro\"", "off is a sensor fault"),
+        ("kind = \"drop\"\noutput = 1", "matches none of the scene's outputs, which are 0 \"mpu@pty\""),
+        ("kind = \"drop\"\noutput = \"mpu@/dev/ttyACM0\"", "matches none of the scene's outputs"),
+        ("kind = \"drop\"\noutput = \"nothing\"", "is not PROTOCOL@LINK"),
+        ("kind = \"drop\"\noutput = true", "its number in the scene, from 0"),
         ("kind = \"drop\"\nshare = \"120 %\"", "at most 100 %"),
         ("kind = \"drop\"\nbits = 3", "`bits` is not a key of"),
         ("kind = \"corrupt\"\nbits = 65", "from 1 to 64"),

@@ -84,7 +84,7 @@ fn a_mistake_of_the_command_line_says_what_would_be_right() {
     for (arguments, says) in [
         (vec!["table-1", "--out", out, "--shard", "1/2"], "--runs 100"),
         (vec!["table-1", "--out", out, "--runs", "2", "--shard", "3/2"], "write I/N"),
-        (vec!["table-1", "--out", out, "--runs", "0"], "write a whole number from 1 on"),
+        (vec!["table-1", "--out", out, "--runs", "0"], "write a whole number of 1 or more"),
         (vec!["table-1", "--out", out, "--format", "npz"], "perhaps `npy`"),
         (vec!["table-1", "--out", out, "--runs", "2", "--set", "sweep.gyro.rate='1 Hz'"], "write a list"),
     ] {

@@ -211,7 +211,7 @@ fn what_cannot_be_is_said_with_what_would_be_right() {
     let broken = OsStr::from_bytes(b"sc\xffne.toml");
     let said = ratetable_in(folder.path(), &[OsStr::new("check"), broken]);
     assert_eq!(said.code, 2);
-    assert!(said.err.contains("argument 2, \"sc\\xFFne.toml\", is no UTF-8"), "{}", said.err);
+    assert!(said.err.contains("argument 2, \"sc\\xFFne.toml\", is not UTF-8"), "{}", said.err);
     let mut listen = std::process::Command::new(assert_cmd::cargo::cargo_bin("ratetable"));
     let nothing = listen.args(["listen", "csv@-"]).stdin(Stdio::null()).output().unwrap();
     let nothing = (nothing.status.code(), String::from_utf8_lossy(&nothing.stderr).into_owned());

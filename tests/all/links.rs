@@ -165,7 +165,7 @@ fn a_pty_with_a_baud_rate_loses_exactly_what_a_uart_would_not_carry() {
         let (report, code, text) = report(child);
         check_identity(&report);
         assert!(
-            text.contains(&format!("the time of a UART at {baud} baud: {} bytes/s", baud / 10)),
+            text.contains(&format!("the timing of a UART at {baud} baud: {} bytes/s", baud / 10)),
             "{text}"
         );
         assert_eq!(received.len() as u64, count(&report, 0, "bytes"), "what was sent arrived");

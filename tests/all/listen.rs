@@ -308,17 +308,20 @@ fn mistakes_say_what_would_be_right() {
     std::fs::write(&empty, []).unwrap();
     let cases: &[(&[&str], &[&str])] = &[
         (&["mpu"], &["PROTOCOL@LINK"]),
-        (&["can@/dev/ttyUSB0"], &["`can` is no protocol"]),
-        (&["mpu@tcp:1"], &["two readings"]),
+        (&["can@/dev/ttyUSB0"], &["`can` is not a protocol"]),
+        (&["mpu@tcp:1"], &["is ambiguous"]),
         (&["mpu@/dev/ttyNONE7"], &["no port /dev/ttyNONE7"]),
-        (&[&format!("mavlink@{path}")], &["file and no port", &format!("file:{path}")]),
+        (&[&format!("mavlink@{path}")], &["a file, not a port", &format!("file:{path}")]),
         (&["mpu@file:/nowhere/at/all"], &["cannot read /nowhere/at/all"]),
         (&[&format!("mpu@file:{path}")], &["bytes came", "no valid mpu packet", "read as mavlink"]),
         (&[&format!("mpu@file:{noise}")], &["12345 bytes", "another protocol or another baud rate"]),
         (&[&format!("mpu@file:{empty}")], &["not a byte came", "empty"]),
         (&["mpu@udpin:0", "--wait", "100ms"], &["not a byte came", "within 0.1 s", "udpin:0.0.0.0"]),
         (&["mpu@pty", "--wait", "100ms"], &["not a byte came", "into the path"]),
-        (&["mpu@udpin:0", "--limit", "sensors.gyro.late_us.p99<3"], &["no `late_us`", "jitter_us"]),
+        (
+            &["mpu@udpin:0", "--limit", "sensors.gyro.late_us.p99<3"],
+            &["`late_us` does not exist", "jitter_us"],
+        ),
     ];
     for (arguments, says) in cases {
         let (code, _, text) = whole(&[&["listen"], *arguments].concat());

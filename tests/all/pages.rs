@@ -93,7 +93,7 @@ fn faults(text: &str) -> Vec<String> {
 const RIGHT: &str = "# A page
 
     $ ratetable check still --set gyro.rate='1 m'
-    --set gyro.rate=1 m: `rate`: `1 m` is a length, but a rate is needed, such as \"100 Hz\"
+    --set gyro.rate=1 m: `rate`: `1 m` is a length, but a rate is required, such as \"100 Hz\"
 
 <!-- test: exit 2 -->
 ```sh

@@ -195,11 +195,11 @@ fn what_cannot_be_scored_is_told_in_one_message_each() {
         (vec![empty.as_str()], "is empty"),
         (
             vec![later.as_str(), "--settle", "1.5s"],
-            "none of its 1 attitudes is at a time at which the truth is known",
+            "none of its 1 attitudes is at a time that the truth covers",
         ),
         (vec!["vqf", "--axes", "xyz"], "write ned-frd or enu-flu"),
-        (vec!["vqf", "--limit", "rms<1"], "there is no `rms`, but name, source, samples, rms_deg"),
-        (vec!["vqf", "--limit", "estimates.ekf.rms_deg<1"], "there is no `ekf`, but vqf"),
+        (vec!["vqf", "--limit", "rms<1"], "`rms` does not exist; name, source, samples, rms_deg"),
+        (vec!["vqf", "--limit", "estimates.ekf.rms_deg<1"], "`ekf` does not exist; vqf"),
     ] {
         let (_, said, code) = flight.score(&arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");

@@ -119,7 +119,7 @@ fn an_estimate_is_scored_on_any_format_and_a_filter_is_refused_where_there_are_a
     }
     let tum = home.path().join("tum");
     let (_, told, code) = score(&tum, &["vqf"]);
-    assert!(code == Some(2) && told.contains("attitudes alone") && told.contains("--format"), "{told}");
+    assert!(code == Some(2) && told.contains("only attitudes") && told.contains("--format"), "{told}");
 }
 
 #[test]

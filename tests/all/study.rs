@@ -126,9 +126,9 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
         ),
         (
             &["acuracy", "coning"],
-            "`acuracy` is no study (accuracy, stability, cost, allan, all); did you mean `accuracy`?",
+            "`acuracy` is not a study (accuracy, stability, cost, allan, all); did you mean `accuracy`?",
         ),
-        (&["coning", "still"], "`coning` is a scene, and so `still` is one too many"),
+        (&["coning", "still"], "`coning` is a scene, so `still` is a second one"),
         (&["accuracy", "nowhere.toml"], "neither a scene file"),
     ] {
         let why = refusal(arguments);
@@ -139,7 +139,7 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
     std::fs::write(&bad, "duration = \"10 s\"\n[gyro]\nrate = 100\n").unwrap();
     for arguments in [&["all", bad.to_str().unwrap()][..], &[bad.to_str().unwrap()]] {
         let why = refusal(arguments);
-        assert!(why.contains("bad.toml:3:") && why.contains("a unit is missing"), "{why}");
+        assert!(why.contains("bad.toml:3:") && why.contains("has no unit"), "{why}");
     }
 }
 

@@ -150,7 +150,7 @@ fn rows_that_cannot_be_used_are_left_out_and_told_by_score_and_by_replay() {
             "dup.tum",
             tum.to_string(),
             3,
-            "1 of 4 rows is left out: 1 with the time of the row before (line 3)",
+            "1 of 4 rows is left out: 1 with the time of the previous row (line 3)",
         ),
         (
             "nan.csv",
@@ -165,7 +165,7 @@ fn rows_that_cannot_be_used_are_left_out_and_told_by_score_and_by_replay() {
             "1 with a quaternion of zeros (line 3)",
         ),
         ("empty.csv", clean.replace("0.02,1,0,0,0", "0.02,,,,"), 3, "1 without a finite value (line 4)"),
-        ("late.csv", clean.replace("0.02,1", "0.005,1"), 3, "1 older than the newest before (line 4)"),
+        ("late.csv", clean.replace("0.02,1", "0.005,1"), 3, "1 older than an earlier row (line 4)"),
         (
             "two.csv",
             clean.replace("0.01,1,0,0,0", "0,1,0,0,0\n0.01,inf,0,0,0"),
@@ -200,7 +200,7 @@ fn a_word_in_a_row_is_still_a_mistake() {
     for arguments in [&["score", "a.csv", "a.csv"][..], &["check", "scene.toml"]] {
         let said = ratetable(home.path(), arguments);
         assert!(
-            said.code == 2 && said.err.contains("a.csv:3: column qw: `one` is no number"),
+            said.code == 2 && said.err.contains("a.csv:3: column qw: `one` is not a number"),
             "{}",
             said.err
         );

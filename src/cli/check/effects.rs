@@ -1,4 +1,4 @@
-//! The table of effects for a person: what the scene models, and what it leaves out.
+//! The table of effects as text: what the scene models, and what it leaves out.
 
 use super::noise;
 use crate::cli::terminal::Stream;
@@ -22,7 +22,7 @@ pub(super) fn text(plan: &Plan) -> String {
         Stream::Out.table(&["sensor", "effect", "size", "which is", "verdict", "key or note"], &rows);
     text += "\n";
     plan.sensors.iter().for_each(|sensor| text += &shows(sensor));
-    text += "An effect is seen where it is at least half a count and a tenth of one sample's white noise. A slow one may be\n\
+    text += "An effect shows where it is at least half a count and a tenth of one sample's white noise. A slow one may be\n\
              found below that by averaging. Noise is set against the count alone, rounding against the noise alone.\n";
     if effects.iter().any(|effect| effect.verdict == Verdict::Needless) {
         text += "What is modelled but below could be left out.\n";
@@ -54,7 +54,7 @@ fn row(effect: &Effect) -> Vec<String> {
     let key = effect.key.clone();
     let by = match (effect.verdict, effect.modelled) {
         (Verdict::Missing, _) => {
-            key.map_or("this version does not model it".into(), |key| format!("consider {key}"))
+            key.map_or("not modelled in this version".into(), |key| format!("consider {key}"))
         }
         (_, true) => key.unwrap_or_default(),
         _ => String::new(),

@@ -1,4 +1,4 @@
-//! The plan for a program.
+//! The plan as JSON.
 
 use super::{Checked, budgets, drawn, noise, terms, warnings};
 use crate::dataset::Bounds;

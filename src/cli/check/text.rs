@@ -1,4 +1,4 @@
-//! The plan for a person.
+//! The plan as text.
 
 use super::effects;
 use super::{Checked, Noise, budgets, drawn, noise, terms, warnings};
@@ -98,7 +98,7 @@ fn position(plan: &Plan) -> String {
     let (origin, velocity) = (plan.origin(), plan.trajectory.start_velocity().v);
     let [north, east, down] = velocity.to_array().map(number);
     format!(
-        "position: begins at {} deg north, {} deg east, {} m, with {north} m/s north, {east} east, {down} down\n",
+        "position: starts at {} deg north, {} deg east, {} m, with {north} m/s north, {east} east, {down} down\n",
         number(origin.latitude.to_degrees()),
         number(origin.longitude.to_degrees()),
         number(origin.altitude)

@@ -16,12 +16,12 @@ pub fn list() -> Result<List, Refusal> {
     let timing = serde_json::to_value(timing::shape(&plan, &output))?;
     let listen = serde_json::to_value(listen::shape(&to))?;
     let score = serde_json::json!({ "estimates": [serde_json::to_value(score::shape("estimate"))?] });
-    let played = format!("NAME of sensors: {}; of links their number, from 0 on", SensorKind::names());
+    let played = format!("NAME of sensors: {}; of links their number, from 0", SensorKind::names());
     let reports = [
         ("run", run, &*played),
         ("timing", timing, &*played),
         ("listen", listen, "NAME of sensors: gyro, accel, …, a second one gyro-2; of links 0"),
-        ("score", score, "NAME: the estimate's; without `estimates.NAME.` a limit is on each of them"),
+        ("score", score, "NAME: the estimate's; without `estimates.NAME.` a limit applies to every estimate"),
     ];
     Ok(List::of_lines(reports.into_iter().map(|(name, report, about)| {
         let mut lines = format!("{name} --limit 'FIELD<VALUE' (also <=, >, >=); {about}\n");

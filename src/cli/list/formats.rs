@@ -11,7 +11,7 @@ pub fn list() -> List {
         vec![
             name.into(),
             "no".into(),
-            format!("brings heavy crates: cargo install --path . --features {name}"),
+            format!("needs large dependencies: cargo install --path . --features {name}"),
         ]
     }));
     List::of_rows(&["format", "in this build", "about"], rows)
@@ -28,6 +28,6 @@ pub fn named() -> String {
     let lacking: Vec<_> = lacking().collect();
     match lacking.as_slice() {
         [] => names.join(", "),
-        lacking => format!("{}; this build lacks {}", names.join(", "), lacking.join(" and ")),
+        lacking => format!("{}; not in this build: {}", names.join(", "), lacking.join(" and ")),
     }
 }

@@ -1,4 +1,4 @@
-//! Keys of a scene: what each takes, in which units and range, and what it is when absent.
+//! Keys of a scene: each one's values, units, range and default.
 
 use super::{Brief, Item, List};
 use crate::keys::{Key, Takes};

@@ -12,15 +12,15 @@ const LOGS: [[&str; 4]; 6] = [
     ],
     [
         "table",
-        "text, a line of column names first, plain or a comment (EuRoC, TUM-VI, ulog2csv)",
-        "a time and a quaternion, Euler angles or angular rates, found by their names or named by the scene",
-        "score; replay, whose `file` it is",
+        "text, first a line of column names, plain or a comment (EuRoC, TUM-VI, ulog2csv)",
+        "a time and a quaternion, Euler angles or angular rates, found by name or named in the scene",
+        "score; replay (its `file`)",
     ],
     [
         "tum",
         "eight numbers a line: t x y z qx qy qz qw",
         "a trajectory as evo and SLAM tools write it",
-        "score; replay, whose `file` it is",
+        "score; replay (its `file`)",
     ],
     ["ulog", "begins with the bytes `ULog`", "a PX4 log: the topic vehicle_attitude", "score"],
     [
@@ -31,7 +31,7 @@ const LOGS: [[&str; 4]; 6] = [
     ],
     [
         "stream",
-        "packets of a protocol, as file:PATH recorded them",
+        "packets of a protocol, as recorded by file:PATH",
         "readings by their arrival or the times in them",
         "listen: ratetable listen PROTOCOL@file:PATH",
     ],

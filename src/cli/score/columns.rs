@@ -1,4 +1,4 @@
-//! Which columns of a table are read, where their names do not say it.
+//! Which columns of a table to read, if their names do not say.
 
 use crate::quantity;
 use crate::table::{Choice, TimeUnit};
@@ -74,7 +74,8 @@ fn euler(text: &str) -> Result<Angles, String> {
 
 fn rate(text: &str) -> Result<Rate, String> {
     let (numerator, denominator) = quantity::rate(text).map_err(|error| error.to_string())?;
-    Rate::new(numerator, denominator).ok_or_else(|| format!("`{text}` is no rate: write such as 200 Hz"))
+    Rate::new(numerator, denominator)
+        .ok_or_else(|| format!("`{text}` is not a rate: write, for example, 200 Hz"))
 }
 
 #[cfg(test)]

@@ -25,7 +25,8 @@ pub(super) fn of(judged: &Judged, known: Known) -> Vec<String> {
         hints.push(rotation(turned, rms, known));
     } else if known.without_mag && heading.heading_rms_deg > 10.0 && heading.inclination_rms_deg < 5.0 {
         hints.push(
-            "without a magnetometer its heading is free: --align heading takes a constant one out".into(),
+            "without a magnetometer its heading is arbitrary: --align heading removes a constant heading"
+                .into(),
         );
     }
     hints
@@ -44,21 +45,21 @@ fn rotation(turned: Aligned, rms: f64, known: Known) -> String {
         };
         let (world, option) = (angle(world_deg), if body_deg < NONE { "world" } else { "frames" });
         return format!(
-            "a constant rotation of the world of {world} deg ({} deg of it heading){body} explains the error ({rest}): --align {option} takes it out",
+            "a constant rotation of the world of {world} deg ({} deg of it heading){body} explains the error ({rest}): --align {option} removes it",
             angle(heading_deg)
         );
     }
     let heading = angle(heading_deg);
     match known.declination_deg {
         Some(declination) if declination.abs() > NEAR && (heading_deg + declination).abs() < NEAR => format!(
-            "its heading is off by {heading} deg: the scene's declination is {} deg, which the estimator does not account for ({rest}); --align heading takes it out",
+            "its heading is off by {heading} deg: the scene's declination is {} deg, which the estimator does not account for ({rest}); --align heading removes it",
             angle(declination)
         ),
         _ if known.without_mag => format!(
-            "its heading is off by {heading} deg, and without a magnetometer it is free ({rest}): --align heading takes it out"
+            "its heading is off by {heading} deg, and without a magnetometer it is arbitrary ({rest}): --align heading removes it"
         ),
         _ => format!(
-            "a constant heading of {heading} deg explains the error ({rest}): --align heading takes it out"
+            "a constant heading of {heading} deg explains the error ({rest}): --align heading removes it"
         ),
     }
 }

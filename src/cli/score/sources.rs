@@ -116,7 +116,7 @@ fn settled(
         Read::File(recorded) => {
             if !recorded.times.breaks.is_empty() {
                 let why = recorded.remarks.last().cloned().unwrap_or_default();
-                return Err(refuse(format!("{why}: a truth has one clock; cut it there")));
+                return Err(refuse(format!("{why}: a truth has one clock; cut the file there")));
             }
             let (series, remarks) = timed(*recorded, unit, None).map_err(refuse)?;
             (Track::of(series).map_err(|why| refuse(why.to_string()))?.with_gaps(), remarks)
@@ -197,7 +197,7 @@ fn timed(recorded: Recorded, unit: TimeUnit, longest: Option<i64>) -> Result<(Se
         return Ok((series, remarks));
     }
     remarks.push(format!(
-        "its clock is set {} times: of its {all} rows the longest stretch between, {} rows from row {} on, is judged",
+        "its clock jumps {} times: of its {all} rows only the longest stretch, {} rows from row {}, is judged",
         cuts.len() - 2,
         stretch.len(),
         stretch.start + 1
@@ -269,9 +269,7 @@ fn run(truth: &Truth, name: &str, kind: &FilterKind, with_mag: bool) -> Result<S
     for sensor in [SensorKind::Gyro, SensorKind::Accel] {
         if !stored::has(folder, sensor) {
             let folder = folder.display();
-            return Err(Refusal(format!(
-                "the filter {name} needs readings of {sensor}, and {folder} has none"
-            )));
+            return Err(Refusal(format!("the filter {name} needs {sensor} readings, but {folder} has none")));
         }
     }
     let failed = RefCell::new(None);
@@ -301,7 +299,7 @@ fn run(truth: &Truth, name: &str, kind: &FilterKind, with_mag: bool) -> Result<S
     }
     let lacks = with_mag && !has_mag;
     let remarks = if lacks {
-        vec!["the dataset has no magnetometer: heading is from where it starts".to_string()]
+        vec!["the dataset has no magnetometer: heading is relative to its start".to_string()]
     } else {
         Vec::new()
     };

@@ -1,4 +1,4 @@
-//! The comparison as a person reads it.
+//! The comparison as text.
 
 use super::hints::angle;
 use crate::cli::terminal::Stream;
@@ -103,9 +103,9 @@ fn notes(scored: &Scored) -> Vec<String> {
             String::new()
         };
         notes.push(match f.heading_offset_deg {
-            Some(heading) => format!("a heading of {} deg is taken out", angle(heading)),
+            Some(heading) => format!("a heading of {} deg is removed", angle(heading)),
             None => format!(
-                "a rotation of the world of {} deg ({} deg of it heading){body} is taken out",
+                "a rotation of the world of {} deg ({} deg of it heading){body} is removed",
                 angle(aligned.world_deg),
                 angle(aligned.heading_deg)
             ),
@@ -119,7 +119,7 @@ fn notes(scored: &Scored) -> Vec<String> {
     }
     // Of an estimate that is mistaken the motion says nothing of time.
     if let (DelayKnown::Unknown, Some(doubt), None) = (f.delay_known, f.delay_doubt, &f.looks) {
-        notes.push(format!("its delay is not known: {doubt}"));
+        notes.push(format!("its delay is unknown: {doubt}"));
     }
     notes.extend(scored.hints.clone());
     notes

@@ -1,5 +1,5 @@
-//! The unit of times that no name says: one in which rows come at a rate that a log has, the file lasts, and truth and
-//! estimate overlap. Where two fit, the user is asked.
+//! The unit of times whose name has none: one that gives a plausible row rate and duration, and an overlap of truth and
+//! estimate. If two fit, the user must choose.
 
 use super::Refusal;
 use crate::table::{TimeUnit, Times};
@@ -49,10 +49,10 @@ impl Unit<'_> {
         let (name, column) = (self.name, self.column);
         Refusal(match units.is_empty() {
             true => format!(
-                "{name}: its column `{column}` says no unit, and in none do its rows come at a rate that a log has: say --time-unit s, ms, us or ns"
+                "{name}: its column `{column}` has no unit, and no unit gives its rows a plausible rate: give --time-unit s, ms, us or ns"
             ),
             false => format!(
-                "{name}: its column `{column}` says no unit, and may be in {}: say which with --time-unit",
+                "{name}: its column `{column}` has no unit and could be in {}: choose with --time-unit",
                 units.join(" or ")
             ),
         })

@@ -1,4 +1,4 @@
-//! What the studies hand to the charts.
+//! The studies' data for the charts.
 
 use super::tables::{label, series};
 use crate::motion::method::METHODS;

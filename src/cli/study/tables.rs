@@ -1,4 +1,4 @@
-//! The studies as a person reads them.
+//! The studies as text.
 
 use crate::cli::terminal::Stream;
 use crate::motion::method::{Input, METHODS, find};

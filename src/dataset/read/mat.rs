@@ -19,7 +19,7 @@ pub(super) fn read(file: &Path, _: What, names: &[&str]) -> Result<Rows, Dataset
         let number = |i: usize| u32::from_le_bytes(std::array::from_fn(|byte| header[4 * i + byte]));
         let [kind, rows, width, imaginary, name_len] = [0, 1, 2, 3, 4].map(number);
         if (kind, width, imaginary) != (0, 1, 0) || name_len > 256 {
-            return Err(refuse(file, "is no level 4 file of column vectors, which datasets have"));
+            return Err(refuse(file, "is not a level 4 file of column vectors, as datasets have"));
         }
         let mut name = vec![0; name_len as usize];
         input.read_exact(&mut name).map_err(failed)?;
@@ -27,7 +27,7 @@ pub(super) fn read(file: &Path, _: What, names: &[&str]) -> Result<Rows, Dataset
         at += HEADER + u64::from(name_len) + bytes;
         let name = String::from_utf8_lossy(&name).trim_end_matches('\0').to_string();
         if at > len {
-            return Err(refuse(file, format!("ends within the column {name}")));
+            return Err(refuse(file, format!("ends inside column {name}")));
         }
         let mut column = Vec::new();
         if name == "t_ns" || names.contains(&name.as_str()) {

@@ -13,7 +13,7 @@ pub(super) fn read(file: &Path, _: What, names: &[&str]) -> Result<Rows, Dataset
     let mut start = [0; 10];
     input.read_exact(&mut start).map_err(DatasetError::io("read", file))?;
     if &start[..8] != MAGIC {
-        return Err(refuse(file, "is no NumPy file of version 1.0"));
+        return Err(refuse(file, "is not a NumPy file of version 1.0"));
     }
     let mut text = vec![0; usize::from(u16::from_le_bytes([start[8], start[9]]))];
     input.read_exact(&mut text).map_err(DatasetError::io("read", file))?;
@@ -21,14 +21,14 @@ pub(super) fn read(file: &Path, _: What, names: &[&str]) -> Result<Rows, Dataset
     let (columns, rows) = described(&header).ok_or_else(|| {
         refuse(
             file,
-            "is no structured array of one dimension with columns of `<i8` and `<f8`, which datasets have",
+            "is not a one-dimensional structured array with columns of `<i8` and `<f8`, as datasets have",
         )
     })?;
     let (time, indices) = (places(file, &columns, &["t_ns"])?, places(file, &columns, names)?);
     let width = 8 * columns.len() as u64;
     let holds = len.saturating_sub(10 + text.len() as u64);
     if rows.checked_mul(width) != Some(holds) {
-        return Err(refuse(file, format!("says {rows} rows of {width} bytes and holds {holds} bytes")));
+        return Err(refuse(file, format!("declares {rows} rows of {width} bytes but holds {holds} bytes")));
     }
     let mut row = vec![0; width as usize];
     let mut read = Rows { times: Vec::new(), columns: vec![Vec::new(); names.len()] };

@@ -53,7 +53,8 @@ pub(super) fn truth(folder: &Path) -> Result<Option<Recorded>, DatasetError> {
         let [w, x, y, z] = [0, 1, 2, 3].map(|of| rows.columns[of][i]);
         let q = DQuat::from_xyzw(x, y, z, w);
         if (q.length() - 1.0).abs() > 1e-3 {
-            let problem = format!("[{w}, {x}, {y}, {z}] has length {}, but a rotation's is 1", q.length());
+            let problem =
+                format!("[{w}, {x}, {y}, {z}] has length {}, but a rotation has length 1", q.length());
             return Err(wrong(&file, i, "qw..qz", problem));
         }
         attitudes.push((SimTime(*t), axes.attitude_in(q)));
@@ -81,7 +82,7 @@ fn rows(folder: &Path, what: What) -> Result<Option<(PathBuf, Rows)>, DatasetErr
         }
         let Some(read) = read else {
             let problem = format!(
-                "this build does not read {format}: `cargo build --release --features {format}` makes one that does, and `generate --format csv` a dataset that any build reads"
+                "this build does not read {format}: `cargo build --release --features {format}` builds one that does, and `generate --format csv` makes a dataset that any build reads"
             );
             return Err(DatasetError::Content { place: file.display().to_string(), problem });
         };
@@ -91,7 +92,7 @@ fn rows(folder: &Path, what: What) -> Result<Option<(PathBuf, Rows)>, DatasetErr
     }
     if what != What::Truth && folder.join("truth.tum").exists() && lists(folder, SensorKind::Gyro) {
         let problem = format!(
-            "TUM trajectories hold attitudes alone, and no other format has the readings of {}: generate it with --format csv, npy, mat, parquet or mcap besides",
+            "TUM trajectories hold only attitudes, and {} has no other format with readings: generate it with --format csv, npy, mat, parquet or mcap too",
             what.name()
         );
         return Err(DatasetError::Content { place: folder.display().to_string(), problem });
@@ -102,7 +103,7 @@ fn rows(folder: &Path, what: What) -> Result<Option<(PathBuf, Rows)>, DatasetErr
 fn check(file: &Path, rows: &Rows, names: &[&str]) -> Result<(), DatasetError> {
     if let Some(i) = rows.times.windows(2).position(|pair| pair[1] <= pair[0]) {
         let problem =
-            format!("{} is not after {}, the time of the row before", rows.times[i + 1], rows.times[i]);
+            format!("{} is not after {}, the time of the previous row", rows.times[i + 1], rows.times[i]);
         return Err(wrong(file, i + 1, "t_ns", problem));
     }
     for (column, name) in rows.columns.iter().zip(names) {
@@ -114,7 +115,7 @@ fn check(file: &Path, rows: &Rows, names: &[&str]) -> Result<(), DatasetError> {
             });
         }
         if let Some(i) = column.iter().position(|value| !value.is_finite()) {
-            return Err(wrong(file, i, name, format!("{} is no number", column[i])));
+            return Err(wrong(file, i, name, format!("{} is not a number", column[i])));
         }
     }
     Ok(())

@@ -15,7 +15,7 @@ pub(super) fn read(file: &Path, _: What, names: &[&str]) -> Result<Rows, Dataset
         }
         let numbers: Option<Vec<f64>> = line.split_whitespace().map(|cell| cell.parse().ok()).collect();
         let Some(&[t, _, _, _, x, y, z, w]) = numbers.as_deref() else {
-            let problem = "is no line of a TUM trajectory: `t x y z qx qy qz qw`";
+            let problem = "is not a line of a TUM trajectory: `t x y z qx qy qz qw`";
             return Err(refuse(file, format!("line {}: `{line}` {problem}", i + 1)));
         };
         read.times.push((t * 1e9).round() as i64);

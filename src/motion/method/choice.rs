@@ -38,19 +38,19 @@ impl fmt::Display for Choice {
         let Choice { method, rate, error_deg, ns_per_simulated_s, missed } = self;
         write!(
             f,
-            "{} at {rate} is at most {error_deg:.1e} deg off in this scene and takes {:.2} us a second of it; ",
+            "{} at {rate} is at most {error_deg:.1e} deg off in this scene and takes {:.2} us per second of scene; ",
             method.name,
             ns_per_simulated_s * 1e-3
         )?;
         match missed {
             None => write!(f, "nothing is cheaper"),
             Some(Missed { method, rate, among: 1 }) => {
-                write!(f, "the one that is cheaper, {} at {rate}, leaves the tolerance", method.name)
+                write!(f, "the one that is cheaper, {} at {rate}, exceeds the tolerance", method.name)
             }
             Some(Missed { method, rate, among }) => {
                 write!(
                     f,
-                    "the {among} that are cheaper, up to {} at {rate}, leave the tolerance",
+                    "the {among} that are cheaper, up to {} at {rate}, exceed the tolerance",
                     method.name
                 )
             }
@@ -74,7 +74,7 @@ pub struct Missed {
 pub enum ToleranceError {
     /// Every candidate left it.
     #[error(
-        "no method at any rate up to {fastest} stays within {tolerance_deg} deg in this scene: ask for less"
+        "no method at any rate up to {fastest} stays within {tolerance_deg} deg in this scene: raise the tolerance"
     )]
     Unmet {
         /// As asked for, degrees.
@@ -84,7 +84,7 @@ pub enum ToleranceError {
     },
     /// The scene lasts longer than is tried.
     #[error(
-        "to choose a method compares many over all of {end} at {rate}, {ticks} steps each, and {MOST_STEPS} is the most: name a `method`, or play shorter"
+        "choosing a method compares many over all of {end} at {rate}, {ticks} steps each, above the limit of {MOST_STEPS}: name a `method`, or shorten the scene"
     )]
     TooLong {
         /// The end of the scene.
@@ -95,7 +95,7 @@ pub enum ToleranceError {
         ticks: u64,
     },
     /// The scene ends before a method shows its error.
-    #[error("in {end} no method makes {FEWEST_STEPS} steps: name a method, or play longer")]
+    #[error("no method makes {FEWEST_STEPS} steps in {end}: name a method, or lengthen the scene")]
     TooShort {
         /// The end of the scene.
         end: SimTime,

@@ -4,7 +4,7 @@ use super::{DOUBLE, Input, Method, MethodKind, Quaternion, Real, Triple};
 
 pub(super) static KIND: MethodKind = MethodKind::of::<CrouchGrossman3, 3>(
     "crouch-grossman-3",
-    "three exponentials one after another",
+    "three exponentials in sequence",
     3,
     Input::Rate(&[0.0, 3.0 / 4.0, 17.0 / 24.0]),
     DOUBLE,

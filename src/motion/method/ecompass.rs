@@ -10,15 +10,13 @@ const PARALLEL: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Degenerate {
     /// Nothing tells up from down.
-    #[error("the specific force is zero (or not finite): nothing tells up from down")]
+    #[error("the specific force is zero (or not finite): up and down are undefined")]
     NoForce,
     /// Nothing tells the heading.
-    #[error("the magnetic field is zero (or not finite): nothing tells the heading")]
+    #[error("the magnetic field is zero (or not finite): heading is undefined")]
     NoField,
     /// As at a magnetic pole.
-    #[error(
-        "the magnetic field is along the specific force, as at a magnetic pole: nothing tells the heading"
-    )]
+    #[error("the magnetic field is along the specific force, as at a magnetic pole: heading is undefined")]
     Parallel,
 }
 

@@ -4,7 +4,7 @@ use super::{BOTH, Input, Method, MethodKind, Quaternion, Real, Triple};
 
 pub(super) static KIND: MethodKind = MethodKind::of::<ExpAverage, 2>(
     "exp-average",
-    "turns by the mean of the rates at the step's ends: the paper's with its sine",
+    "turns by the mean of the rates at the step's ends: the paper's method with its sine",
     2,
     Input::Rate(&[0.0, 1.0]),
     BOTH,

@@ -51,7 +51,7 @@ pub struct Step {
 }
 
 /// The attitude at the ticks of `rate` in `[0, end)`, integrated from the true gyroscope by `method`, from the true
-/// attitude at 0 on; each is computed when it is asked for, and the first that is refused is the last of use.
+/// attitude at 0 on; each is computed when it is asked for, and it stops at the first that is refused.
 ///
 /// A method of rates is given the truth at the times it asks for, to the nanosecond; one of increments the true
 /// means times their intervals, and it has an attitude only at the ends of its steps, every few ticks. At a seam of the

@@ -33,7 +33,7 @@ pub(super) fn at(key: &'static str) -> impl Fn(TableError) -> KeyError {
 pub(super) fn when<R: BufRead>(table: &Table<R>, values: &Values) -> Result<When, KeyError> {
     if let Some(hz) = values.scalar("rate") {
         if values.has("time") {
-            return Err(KeyError::new("rate", "is given beside `time`: keep one of the two"));
+            return Err(KeyError::new("rate", "is given with `time`: keep only one"));
         }
         // To a billionth of a hertz.
         let rate =
@@ -56,7 +56,7 @@ pub(super) fn when<R: BufRead>(table: &Table<R>, values: &Values) -> Result<When
     clock.map(|clock| When { clock, ns: None }).ok_or_else(|| {
         lacking(
             table,
-            "has no column of time that is recognised (t_ns, t_us, t_ms, t_s, time, timestamp): add time = { column = \"…\", unit = \"s\" }, or rate = \"200 Hz\" to a log without one",
+            "has no recognised time column (t_ns, t_us, t_ms, t_s, time, timestamp): add time = { column = \"…\", unit = \"s\" }, or rate = \"200 Hz\" for a log without times",
         )
     })
 }
@@ -69,7 +69,7 @@ pub(super) fn turns<R: BufRead>(
 ) -> Result<Turns, KeyError> {
     let given: Vec<_> = TURNS.into_iter().filter(|key| values.has(key)).collect();
     if let [first, second, ..] = given[..] {
-        return Err(KeyError::new(second, format!("is given beside `{first}`: keep one of the two")));
+        return Err(KeyError::new(second, format!("is given with `{first}`: keep only one")));
     }
     if let Some((key, (names, unit))) = given.first().and_then(|key| Some((*key, values.columns(key)?))) {
         return Ok(match key {
@@ -93,7 +93,7 @@ pub(super) fn turns<R: BufRead>(
         }
         _ => Err(lacking(
             table,
-            "has no attitude or angular rate that is recognised (qw, qx, qy, qz, …): name its columns, such as euler = { columns = [\"roll\", \"pitch\", \"yaw\"], unit = \"deg\" }",
+            "has no recognised attitude or angular rate (qw, qx, qy, qz, …): name its columns, such as euler = { columns = [\"roll\", \"pitch\", \"yaw\"], unit = \"deg\" }",
         )),
     }
 }

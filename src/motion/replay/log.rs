@@ -79,7 +79,7 @@ fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>)
     }
     if let Some(row) = times.breaks.first() {
         return wrong(format!(
-            "{file}:{}: its clock steps back from the row before and goes on from there: cut the log there",
+            "{file}:{}: its clock steps back from the previous row and continues from there: cut the log there",
             series.lines[*row]
         ));
     }
@@ -104,7 +104,7 @@ fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>)
     };
     if let Some(row) = ns.windows(2).position(|pair| pair[1] <= pair[0]) {
         return wrong(format!(
-            "{file}:{}: is less than a nanosecond after the row before",
+            "{file}:{}: is less than a nanosecond after the previous row",
             series.lines[row + 1]
         ));
     }
@@ -119,13 +119,13 @@ fn guessed<T>(file: &str, series: &Series<T>, column: &str) -> Result<TimeUnit, 
     }
     let plausible: Vec<_> = series.times.plausible().iter().map(|unit| format!("\"{unit}\"")).collect();
     let why = match plausible.is_empty() {
-        true => "in none does it come at a rate that a log has".to_string(),
+        true => "no unit gives a plausible rate".to_string(),
         false => format!("{} fit its rows", plausible.join(" and ")),
     };
     Err(KeyError::new(
         "file",
         format!(
-            "{file}: its column `{column}` has no unit, and {why}: add time = {{ column = \"{column}\", unit = \"{unit}\" }} or whichever it is"
+            "{file}: its column `{column}` has no unit, and {why}: add time = {{ column = \"{column}\", unit = \"{unit}\" }} or the right unit"
         ),
     ))
 }

@@ -35,7 +35,7 @@ pub(super) fn gaps<const N: usize>(log: &Log<N>) -> impl Iterator<Item = String>
     let grid = &log.grid;
     let gaps = (0..grid.len() - 1).filter(|&i| grid.is_gap(i)).map(|i| {
         format!(
-            "{}: a gap of {} after the row before, where rows are {} apart (median); between the two it goes straight",
+            "{}: a gap of {} after the previous row, where rows are {} apart (median); the motion interpolates linearly across it",
             log.place(i + 1),
             grid.at(i + 1) - grid.at(i),
             grid.median
@@ -66,7 +66,7 @@ fn jumps<const N: usize>(
         // Of two neighbours one has changed by half of what is off at least; most need not be asked.
         let beyond = (step(i).length() > 0.5 * least).then(|| beyond(grid, &step, i, least))??;
         Some(format!(
-            "{}: jumps by {:.3} {unit} from the row before, {:.3} {unit} of which its neighbours do not explain",
+            "{}: jumps by {:.3} {unit} from the previous row, {:.3} {unit} more than its neighbours explain",
             log.place(i + 1),
             step(i).length().to_degrees(),
             beyond.to_degrees()

@@ -242,12 +242,12 @@ fn mistakes_of_a_log_are_placed() {
         ("", "file", "log.csv is empty"),
         ("# only a comment\n", "file", "is empty"),
         ("0,1,0,0,0\n1,1,0,0,0\n", "file", "log.csv:1 holds numbers, but the line before"),
-        ("tick,qw,qx,qy,qz\n0,1,0,0,0\n", "file", "no column of time|its columns are tick, qw, qx, qy, qz"),
         (
-            "t_ns,a,b\n0,1,0\n",
+            "tick,qw,qx,qy,qz\n0,1,0,0,0\n",
             "file",
-            "no attitude or angular rate that is recognised|its columns are t_ns, a, b",
+            "no recognised time column|its columns are tick, qw, qx, qy, qz",
         ),
+        ("t_ns,a,b\n0,1,0\n", "file", "no recognised attitude or angular rate|its columns are t_ns, a, b"),
         (
             "t_s,roll,pitch,yaw\n0,1,0,0\n",
             "file",
@@ -268,7 +268,7 @@ fn mistakes_of_a_log_are_placed() {
         (
             "t_ns,qw,qx,qy,qz\n0,1,0,0,0\n1,1,y,0,0\n2,1,x,0,0\n",
             "file",
-            "log.csv:3: column qx: `y` is no number (and another row like it)",
+            "log.csv:3: column qx: `y` is not a number (and another row like it)",
         ),
         (
             "t_ns,qw,qx,qy,qz\n0,1,0,0,0\n# note\n\n1,1,0\n",
@@ -283,13 +283,17 @@ fn mistakes_of_a_log_are_placed() {
         (
             "t_ns,qw,qx,qy,qz\n5,1,0,0,0\n6,1,0,0,0\n0,1,0,0,0\n1,1,0,0,0\n2,1,0,0,0\n",
             "file",
-            "log.csv:4: its clock steps back from the row before",
+            "log.csv:4: its clock steps back from the previous row",
         ),
-        ("t_ns,qw,qx,qy,qz\nzero,1,0,0,0\n4,1,0,0,0\n", "file", "log.csv:2: column t_ns: `zero` is no time"),
+        (
+            "t_ns,qw,qx,qy,qz\nzero,1,0,0,0\n4,1,0,0,0\n",
+            "file",
+            "log.csv:2: column t_ns: `zero` is not a time",
+        ),
         (
             "t_ns,qw,qx,qy,qz\n0,1e-7,0,0,0\n4,1,0,0,0\n",
             "file",
-            "log.csv:2: a quaternion of length 0.0000001 is no attitude",
+            "log.csv:2: a quaternion of length 0.0000001 is not an attitude",
         ),
         (
             "time,qw,qx,qy,qz\n0,1,0,0,0\n100,1,0,0,0\n",
@@ -358,7 +362,7 @@ fn a_log_begins_where_the_vehicle_is_unless_it_is_turned_there() {
     let elsewhere = Context { anywhere: false, ..context() };
     let error = build(&values(&text), &elsewhere).unwrap_err();
     assert!(
-        error.message.contains("log.csv:2 begins 7") && error.message.contains("align = \"start\""),
+        error.message.contains("log.csv:2 starts 7") && error.message.contains("align = \"start\""),
         "{error:?}"
     );
     let mut turned = values(&text);
@@ -420,8 +424,11 @@ fn rows_that_cannot_be_used_are_left_out_and_told() {
     assert_eq!(played(&clean, 1.0).1, Vec::<String>::new());
     let second = turned(1.0);
     for (bad, says) in [
-        (row(1.0, 1.0, 0.0), "log.csv: 1 of 7 rows is left out: 1 with the time of the row before (line 4)"),
-        (row(0.5, 1.0, 0.0), "1 older than the newest before (line 4)"),
+        (
+            row(1.0, 1.0, 0.0),
+            "log.csv: 1 of 7 rows is left out: 1 with the time of the previous row (line 4)",
+        ),
+        (row(0.5, 1.0, 0.0), "1 older than an earlier row (line 4)"),
         ("1.5,nan,nan,nan,nan\n".into(), "1 without a finite value (line 4)"),
         ("1.5,,,,\n".into(), "1 without a finite value (line 4)"),
         (row(1.5, 0.0, 0.0), "1 with a quaternion of zeros (line 4)"),
@@ -474,7 +481,7 @@ fn columns_by_number_and_a_rate_make_a_log_of_bare_numbers() {
     let q = motion.at(Attitude::IDENTITY, Double::from(0.25)).attitude.q;
     assert!(angle_between(q, DQuat::from_xyzw(0.0, 0.0, 0.75f64.sqrt(), 0.5)) < 1e-9);
     by_number.insert("time", Value::Columns(vec!["1".into()], 1.0));
-    assert!(build(&by_number, &context()).unwrap_err().message.contains("is given beside `time`"));
+    assert!(build(&by_number, &context()).unwrap_err().message.contains("is given with `time`"));
 }
 
 #[test]

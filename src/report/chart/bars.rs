@@ -18,7 +18,7 @@ pub struct Bars {
     pub unit: String,
     /// The bars from above to below.
     pub bars: Vec<Bar>,
-    /// A vertical line across all of them with its name: what they are to be judged by.
+    /// A vertical line across all of them with its name: the reference for them.
     pub line: Option<(String, f64)>,
 }
 

@@ -56,7 +56,7 @@ fn recorded(name: &str, series: Series<Packed>, mut remarks: Vec<String>) -> Res
     let told = series.rows.told();
     if series.values.is_empty() {
         return Err(FileError::Content(match told {
-            Some(told) => format!("{name} has no row that can be used: {told}"),
+            Some(told) => format!("{name} has no usable row: {told}"),
             None => format!("{name} has a header and no rows"),
         }));
     }
@@ -66,7 +66,7 @@ fn recorded(name: &str, series: Series<Packed>, mut remarks: Vec<String>) -> Res
         let more = series.times.breaks.len() - 1;
         let more = if more > 0 { format!(" (and {more} more times)") } else { String::new() };
         let line = series.lines[*first];
-        remarks.push(format!("its clock steps back in line {line} and goes on from there{more}"));
+        remarks.push(format!("its clock steps back at line {line} and continues from there{more}"));
     }
     Ok(Recorded {
         attitudes: series.values,
@@ -139,7 +139,7 @@ fn lacking<R: BufRead>(table: &Table<R>, has_time: bool, has_attitude: bool) -> 
     let choose = "or choose them by name or number from 1 with --time and --quaternion or --euler";
     FileError::Content(match (has_time, has_attitude) {
         _ if !table.is_headed() => format!(
-            "{place}: is a row of numbers and not the header that a table begins with: t_s, qw, qx, qy, qz, or roll_deg, pitch_deg, yaw_deg; write one, {choose}"
+            "{place}: is a row of numbers, not the header that a table starts with: t_s, qw, qx, qy, qz, or roll_deg, pitch_deg, yaw_deg; write one, {choose}"
         ),
         (true, _) => format!(
             "{place}: has no attitude: qw, qx, qy, qz or roll_deg, pitch_deg, yaw_deg (or …_rad); {told}; choose some by name or number from 1 with --quaternion or --euler"

@@ -124,15 +124,15 @@ fn every_mistake_has_its_place_and_what_would_be_right() {
         ("", "x.csv is empty"),
         ("t_s,qw,qx,qy,qz\n", "no rows"),
         ("# hello\na,b\n1,2", "x.csv:2: has neither time nor attitude"),
-        ("1,1,0,0,0\n2,1,0,0,0", "x.csv:1: is a row of numbers and not the header"),
+        ("1,1,0,0,0\n2,1,0,0,0", "x.csv:1: is a row of numbers, not the header"),
         ("# foo bar\n1,1,0,0,0", "x.csv:2: is a row of numbers"),
         ("t_s,a\n1,2", "x.csv:1: has no attitude: qw, qx"),
         ("qw,qx,qy,qz\n1,0,0,0", "has no time: t_ns"),
         ("t_s,roll,pitch,yaw\n1,2,3,4", "no unit: call them roll_deg"),
-        ("t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,zero,0", "x.csv:3: column qy: `zero` is no number"),
+        ("t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,zero,0", "x.csv:3: column qy: `zero` is not a number"),
         ("t_s,qw,qx,qy,qz\n0,1,0,0\n", "x.csv:2: the row has 4 columns, the header 5"),
         ("t_s,qw,qx,qy,qz\n0,1,0,0,0\n1,2,0,0,0", "x.csv:3: a quaternion of length 2"),
-        ("t_s,qw,qx,qy,qz\n0,nan,0,0,0\n1,0,0,0,0", "no row that can be used: 2 of 2 rows are left out"),
+        ("t_s,qw,qx,qy,qz\n0,nan,0,0,0\n1,0,0,0,0", "no usable row: 2 of 2 rows are left out"),
         ("t_s,qw,qx,qy,qz\n0,nan\n", "x.csv:2: the row has 2 columns, the header 5"),
         ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 x 1", "x.csv:2: column 7: `x`"),
     ] {
@@ -199,7 +199,7 @@ fn a_ulog_that_breaks_off_is_read_as_far_as_it_goes_and_no_bytes_panic() {
     let whole = log(5, "vehicle_attitude");
     let cut = read_log(&whole[..whole.len() - 30]).unwrap();
     assert!(cut.attitudes.len() == 9 || cut.attitudes.len() == 10);
-    assert!(cut.remarks[0].contains("breaks off"), "{:?}", cut.remarks);
+    assert!(cut.remarks[0].contains("is truncated"), "{:?}", cut.remarks);
     let other = read_log(&log(5, "vehicle_attitude_setpoint")).unwrap_err();
     assert!(
         other.contains("no topic vehicle_attitude") && other.contains("other, vehicle_attitude_setpoint")

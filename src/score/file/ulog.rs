@@ -21,7 +21,7 @@ const TOPIC: &str = "vehicle_attitude";
 
 pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
     let content = |why: String| FileError::Content(format!("{}: {why}", path.display()));
-    let name = path.to_str().ok_or_else(|| content("its name is no UTF-8; rename it".into()))?;
+    let name = path.to_str().ok_or_else(|| content("its name is not UTF-8; rename it".into()))?;
     let mut topics = BTreeSet::new();
     let (mut ticks, mut attitudes, mut not_finite) = (Vec::new(), Vec::new(), 0);
     let mut problem = None;
@@ -58,10 +58,7 @@ pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
     }
     let mut remarks = match ended {
         Completeness::Complete => Vec::new(),
-        _ => vec![format!(
-            "the log breaks off in the middle: the {} attitudes before that are read",
-            attitudes.len()
-        )],
+        _ => vec![format!("the log is truncated: the {} attitudes before the end are read", attitudes.len())],
     };
     let rows = Rows::records(attitudes.len() + not_finite, not_finite);
     let series = Series::of_records(ticks, attitudes, TimeUnit::Us, rows);
@@ -88,7 +85,7 @@ fn row(data: &DataMessage<'_>) -> Result<(u64, Option<Packed>), String> {
     let t =
         sampled.or_else(|| micros(format, bytes, "timestamp")).ok_or("its records have no `timestamp`")?;
     if i64::try_from(t).ok().and_then(|t| t.checked_mul(1000)).is_none() {
-        return Err(format!("a timestamp of {t} µs is no time since boot"));
+        return Err(format!("a timestamp of {t} µs is not a time since boot"));
     }
     if !q.is_finite() || q.length() < 1e-9 {
         return Ok((t, None));

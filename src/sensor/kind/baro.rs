@@ -1,4 +1,4 @@
-//! `[baro]`: the pressure of the air, absolute.
+//! `[baro]`: absolute air pressure.
 
 use super::{Derived, Row, Senses, Shape, Shown, Table};
 use crate::earth::{self, SEA_LEVEL_PRESSURE, pressure_altitude};

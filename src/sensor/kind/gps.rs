@@ -1,4 +1,4 @@
-//! `[gps]`: a receiver's position and velocity, and what it claims of them.
+//! `[gps]`: a receiver's position and velocity, with its reported accuracy.
 
 use super::{Row, Senses, Shape, Shown, Table};
 use crate::keys::{Key, Takes, Values};
@@ -31,7 +31,7 @@ pub(super) static ROW: Row = Row {
             "position",
             "WGS 84: geodetic latitude and longitude, deg, north and east positive; altitude above the ellipsoid, m; velocity north, east and down (whatever the nav frame), m/s",
         )),
-        note: Some("position and velocity as the receiver says them, then the true ones."),
+        note: Some("position and velocity as the receiver reports them, then the true ones."),
         derived: None,
     },
 };
@@ -40,9 +40,9 @@ fn keys() -> Vec<Key> {
     let length = Takes::Scalar(Kind::LENGTH.signed(Sign::NonNegative));
     let key = |name, takes, default, about| Key { name, takes, default: Some(default), about };
     vec![
-        key("eph", length, "1 m", "horizontal accuracy that it claims"),
-        key("epv", length, "1.5 m", "vertical accuracy that it claims"),
-        key("satellites", Takes::Whole(0, 254), "12", "how many it claims to use"),
+        key("eph", length, "1 m", "horizontal accuracy that it reports"),
+        key("epv", length, "1.5 m", "vertical accuracy that it reports"),
+        key("satellites", Takes::Whole(0, 254), "12", "the number of satellites that it reports"),
     ]
 }
 
@@ -71,7 +71,7 @@ impl Claims {
 /// White noise on the velocity of a fix: a fresh normal number each sample and axis.
 pub(crate) static VELOCITY_NOISE: TermKind = TermKind {
     name: "velocity_noise",
-    about: "a fresh normal number each sample on a receiver's velocity",
+    about: "a new normal random number on the receiver's velocity each sample",
     serves: Kinds::of(&[SensorKind::Gps]),
     stage: Stage::Reading,
     needs: &[],

@@ -89,6 +89,6 @@ fn each_message_of_the_table_of_typical_mistakes_is_what_is_said() {
 
 #[test]
 fn a_message_that_is_another_is_found() {
-    let page = PAGE.replacen("a unit is missing", "no unit is there", 1);
+    let page = PAGE.replacen("has no unit", "no unit at all is there", 1);
     assert_eq!(wrong(&page).len(), wrong(PAGE).len() + 1);
 }
