@@ -3,7 +3,7 @@
 mod atmosphere;
 mod ellipsoid;
 
-pub use atmosphere::{SEA_LEVEL_PRESSURE, pressure, pressure_altitude};
+pub use atmosphere::{SEA_LEVEL_PRESSURE, density, indicated_airspeed, pressure, pressure_altitude};
 
 use crate::geometry::{Nav, Vector};
 use world_magnetic_model::GeomagneticField;

@@ -7,6 +7,7 @@
 //! | `/imu/mag` | `sensor_msgs/msg/MagneticField` | magnetometer, in tesla |
 //! | `/imu/gyro/true`, `/imu/gyro/bias` … | `geometry_msgs/msg/Vector3Stamped` | error-free reading and bias in effect: rad/s, m/s², tesla |
 //! | `/baro` | `sensor_msgs/msg/FluidPressure` | barometer, in pascal |
+//! | `/airspeed` | `sensor_msgs/msg/FluidPressure` | differential pressure of a pitot tube, in pascal |
 //! | `/gps/fix` | `sensor_msgs/msg/NavSatFix` | GPS position, in degrees and metres above the ellipsoid |
 //! | `/gps/velocity` | `geometry_msgs/msg/Vector3Stamped` | GPS velocity, in the scene's nav axes |
 //! | `/truth`, `/truth/mag` | `Imu`, `MagneticField` | the exact attitude, angular rate, specific force and field |
@@ -121,6 +122,7 @@ fn shapes(plan: &Plan, tables: &[Table]) -> Vec<Shape> {
         (SensorKind::Accel, false) => Shape::Accel,
         (SensorKind::Mag, _) => Shape::Mag,
         (SensorKind::Baro, _) => Shape::Pressure("/baro"),
+        (SensorKind::Airspeed, _) => Shape::Pressure("/airspeed"),
         (SensorKind::Gps, _) => Shape::Gps,
     };
     let readings = plan.sensors.iter().map(sensor);

@@ -10,6 +10,8 @@ pub const SEA_LEVEL_PRESSURE: f64 = 101_325.0;
 
 /// Effective radius of the Earth, m.
 const R0: f64 = 6_356_766.0;
+/// Molar mass over the gas constant, M/R*, kg·K/J.
+const MR: f64 = 28.9644e-3 / 8.314_32;
 /// g₀·M/R*, K/m.
 const GMR: f64 = 9.806_65 * 28.9644e-3 / 8.314_32;
 
@@ -74,6 +76,22 @@ fn layer(begun: impl Fn(&Layer) -> bool) -> Layer {
 pub fn pressure(altitude: f64, sea_level: f64) -> f64 {
     let h = (R0 * altitude / (R0 + altitude)).min(TOP);
     layer(|layer| layer.base <= h).pressure(h) * (sea_level / SEA_LEVEL_PRESSURE)
+}
+
+/// Density (kg/m³) at a geometric altitude (m) where the pressure is `sea_level` Pa at altitude 0 and the temperature is
+/// the standard's: `ρ = P·M/(R*·T)` (equation 42).
+pub fn density(altitude: f64, sea_level: f64) -> f64 {
+    let h = (R0 * altitude / (R0 + altitude)).min(TOP);
+    let layer = layer(|layer| layer.base <= h);
+    pressure(altitude, sea_level) * MR / (layer.temperature + layer.lapse * (h - layer.base))
+}
+
+/// Density at sea level, kg/m³.
+const SEA_LEVEL_DENSITY: f64 = 1.225;
+
+/// The airspeed (m/s) that an instrument shows at a dynamic pressure (Pa): `√(2q/ρ₀)`, with the sign of q.
+pub fn indicated_airspeed(pressure: f64) -> f64 {
+    libm::copysign(libm::sqrt(2.0 * pressure.abs() / SEA_LEVEL_DENSITY), pressure)
 }
 
 /// The geopotential altitude (m) at which the standard atmosphere has this pressure (Pa): an altimeter's reading when

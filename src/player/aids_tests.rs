@@ -185,3 +185,71 @@ fn a_receiver_ticks_five_times_a_second_unless_told_otherwise() {
     let here = fix(&of(&plan, SensorKind::Gps)[4].1);
     assert_eq!((here.position, here.velocity), (Place::ORIGIN, Vector::ZERO));
 }
+
+/// 20 m/s at sea level is 245 Pa, ½·1.225·20²; the air thins with altitude, and the wind is in it.
+#[test]
+fn a_pitot_tube_reads_half_rho_v_squared_along_body_x() {
+    let read = |scene: &str| {
+        let readings = of(
+            &plan(&format!("duration = \"1 s\"\n{scene}[airspeed]\nrate = \"10 Hz\"\n")),
+            SensorKind::Airspeed,
+        );
+        *readings[0].1.pressure().unwrap()
+    };
+    let level = "[start]\nvelocity = \"[20, 0, 0] m/s\"\n";
+    assert!((read(level).value - 245.0).abs() < 0.01, "{:?}", read(level));
+    // Across, from behind, and at rest.
+    let heading =
+        |deg: f64| format!("[start]\nattitude = \"[0, 0, {deg}] deg\"\nvelocity = \"[20, 0, 0] m/s\"\n");
+    assert!(read(&heading(90.0)).value.abs() < 1e-9);
+    assert!((read(&heading(180.0)).value + 245.0).abs() < 0.01);
+    assert!((read(&heading(60.0)).value - 245.0 / 4.0).abs() < 0.01, "v along x is a half");
+    assert_eq!(read("").value, 0.0);
+    // Density: 0.7361 kg/m³ at 5000 m (U.S. Standard Atmosphere, 1976, table I), of a day's pressure in proportion.
+    let high = format!(
+        "[earth]\nlatitude = \"0 deg\"\nlongitude = \"0 deg\"\naltitude = \"5000 m\"\ndate = \"2026-11-22\"\n{level}"
+    );
+    assert!((read(&high).value - 0.5 * 0.73643 * 400.0).abs() < 0.01, "{:?}", read(&high));
+}
+
+/// The wind is the air's own velocity: with 8 m/s from ahead, 20 m/s over the ground are 28 through the air.
+#[test]
+fn wind_is_the_velocity_of_the_air_in_the_scenes_nav_axes() {
+    for (axes, start, wind) in [
+        ("ned-frd", "[20, 0, 0]", "[-8, 5, 0]"),
+        ("enu-flu", "[20, 0, 0]", "[-8, -5, 0]"),
+        ("ned-frd", "[12, 0, 0]", "[-16, 0, 3]"),
+    ] {
+        let scene = format!(
+            "duration = \"1 s\"\naxes = \"{axes}\"\n[start]\nvelocity = \"{start} m/s\"\n[airspeed]\nrate = \"10 Hz\"\nwind = \"{wind} m/s\"\n"
+        );
+        let (_, reading) = of(&plan(&scene), SensorKind::Airspeed)[0];
+        let expected = 0.5 * 1.225 * 28.0 * 28.0;
+        let q = reading.pressure().unwrap().value;
+        assert!((q - expected).abs() < 0.02, "{axes}: {q} against {expected}");
+    }
+}
+
+/// Its errors are those of one number.
+#[test]
+fn a_pitot_tube_has_bias_noise_range_resolution_and_faults() {
+    let scene = |keys: &str| {
+        plan(&format!(
+            "seed = 5\nduration = \"200 s\"\n[start]\nvelocity = \"[20, 0, 0] m/s\"\n[airspeed]\nrate = \"50 Hz\"\n{keys}"
+        ))
+    };
+    let readings = |keys: &str| of(&scene(keys), SensorKind::Airspeed);
+    let noisy = readings("noise_std = \"3 Pa\"\nbias = \"10 Pa\"\n");
+    let n = noisy.len() as f64;
+    let off = noisy.iter().map(|(_, it)| it.pressure().unwrap()).map(|it| it.value - it.truth - it.bias);
+    let (sum, squares) = off.fold((0.0, 0.0), |(sum, squares), off| (sum + off, squares + off * off));
+    assert!((sum / n).abs() < 5.0 * 3.0 / n.sqrt());
+    assert!((libm::sqrt(squares / n) / 3.0 - 1.0).abs() < 5.0 / libm::sqrt(2.0 * n));
+    assert!(noisy.iter().all(|(_, it)| it.pressure().unwrap().bias == 10.0));
+    let clipped = readings("range = \"200 Pa\"\n");
+    assert!(clipped.iter().all(|(_, it)| it.clipped && it.pressure().unwrap().value == 200.0));
+    let counted = readings("resolution = \"7 Pa\"\n");
+    assert!(counted.iter().all(|(_, it)| it.pressure().unwrap().value == 245.0), "35 counts");
+    let blocked = readings("[[fault]]\nsensor = \"airspeed\"\nkind = \"off\"\nstart = \"1 s\"\n");
+    assert_eq!(blocked.len(), 50);
+}

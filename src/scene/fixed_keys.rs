@@ -24,7 +24,7 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     (
         "start",
         "velocity",
-        "ground velocity at t = 0, a nav vector: \"[15, 0, 0] m/s\" (default: the first motion's own speed along the heading, 0 where it has none); [baro] and [gps] use it",
+        "ground velocity at t = 0, a nav vector: \"[15, 0, 0] m/s\" (default: the first motion's own speed along the heading, 0 where it has none); [baro], [gps] and [airspeed] use it",
     ),
     ("earth", "gravity", "its magnitude, or the free-fall acceleration as a nav vector: \"9.80665 m/s^2\""),
     ("earth", "field", "the magnetic field, a nav vector: \"[20, 0, 45] uT\""),

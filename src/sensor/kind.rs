@@ -3,6 +3,7 @@
 //! Everything that differs from kind to kind is in its [`Row`], in a file of its own. To add a kind: its file, its
 //! variant, its line in `ROWS`.
 
+mod airspeed;
 mod baro;
 mod gps;
 mod triads;
@@ -29,10 +30,13 @@ pub enum SensorKind {
     Baro,
     /// Position and velocity.
     Gps,
+    /// Differential pressure of a pitot tube, Pa.
+    Airspeed,
 }
 
 /// Every kind's row, in order.
-const ROWS: ByKind<&Row> = [&triads::GYRO, &triads::ACCEL, &triads::MAG, &baro::ROW, &gps::ROW];
+const ROWS: ByKind<&Row> =
+    [&triads::GYRO, &triads::ACCEL, &triads::MAG, &baro::ROW, &gps::ROW, &airspeed::ROW];
 
 /// One value for each kind of sensor, by `kind as usize`.
 pub type ByKind<T> = [T; SensorKind::COUNT];
@@ -147,11 +151,17 @@ pub struct Derived {
 
 impl SensorKind {
     /// How many kinds there are.
-    pub const COUNT: usize = 5;
+    pub const COUNT: usize = 6;
 
     /// Every kind, in order.
-    pub const ALL: ByKind<SensorKind> =
-        [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag, SensorKind::Baro, SensorKind::Gps];
+    pub const ALL: ByKind<SensorKind> = [
+        SensorKind::Gyro,
+        SensorKind::Accel,
+        SensorKind::Mag,
+        SensorKind::Baro,
+        SensorKind::Gps,
+        SensorKind::Airspeed,
+    ];
 
     /// Those of three body axes, in order; they come first in [`SensorKind::ALL`].
     pub const TRIADS: [SensorKind; 3] = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag];

@@ -26,7 +26,8 @@ impl Kinds {
     pub const TRIADS: Kinds = Kinds::of(&SensorKind::TRIADS);
 
     /// Those whose readings are components of one quantity: all but a receiver.
-    pub const BY_COMPONENT: Kinds = Kinds(Kinds::TRIADS.0 | Kinds::of(&[SensorKind::Baro]).0);
+    pub const BY_COMPONENT: Kinds =
+        Kinds(Kinds::TRIADS.0 | Kinds::of(&[SensorKind::Baro, SensorKind::Airspeed]).0);
 
     /// These kinds.
     pub const fn of(kinds: &[SensorKind]) -> Kinds {

@@ -26,7 +26,7 @@ pub struct Reading {
 pub enum Measurement {
     /// Of a gyroscope (rad/s), an accelerometer (m/s²) or a magnetometer (µT), in body axes (Forward-Right-Down).
     Triad(Measured<Vector<Body>>),
-    /// Of a barometer, Pa.
+    /// Of a barometer or a pitot tube, Pa.
     Pressure(Measured<f64>),
     /// Of a GPS receiver.
     Position(Position),
@@ -94,7 +94,7 @@ impl Reading {
         }
     }
 
-    /// Pa, of a barometer.
+    /// Pa, of a barometer or a pitot tube.
     pub const fn pressure(&self) -> Option<&Measured<f64>> {
         match &self.measurement {
             Measurement::Pressure(pressure) => Some(pressure),

@@ -61,7 +61,7 @@ fn lateness_is_what_the_clock_did_and_everything_is_sent() {
     let mut pacer = Pacer::new(clock, ring, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
     pacer.run(1_000_000, &shared);
     accounts_balance(&made, &mut pacer);
-    assert_eq!(made.samples[0], [1000, 1000, 100, 0, 0]);
+    assert_eq!(made.samples[0], [1000, 1000, 100, 0, 0, 0]);
     let reports = tally::sensors(&plan, &pacer.tallies, made.samples[0], Default::default(), true);
     let late = reports[0].late_us.unwrap();
     assert_eq!((late.min, late.p50), (0.0, 0.0));

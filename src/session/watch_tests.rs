@@ -72,7 +72,7 @@ fn slices_of_the_bare_timer_change_no_byte_and_take_no_scene_time() {
 fn rates_and_intervals_leave_the_bare_timers_slices_out() {
     let (pacer, ..) = watched(VirtualClock::default());
     let report =
-        &tally::sensors(&plan(SCENE), &pacer.tallies, [1000, 1000, 100, 0, 0], Default::default(), true);
+        &tally::sensors(&plan(SCENE), &pacer.tallies, [1000, 1000, 100, 0, 0, 0], Default::default(), true);
     for (sensor, hz, intervals) in [(0, 1000.0, 1_000.0), (2, 100.0, 10_000.0)] {
         assert!((report[sensor].sent_hz.unwrap() / hz - 1.0).abs() < 1e-9, "{:?}", report[sensor]);
         let interval = report[sensor].interval_us.unwrap();

@@ -34,13 +34,14 @@ const DIALECT_VERSION: u8 = 3;
 pub(super) const MICROTESLA_A_GAUSS: f64 = 100.0;
 pub(super) const PASCALS_A_HECTOPASCAL: f64 = 100.0;
 /// The kinds of sensor that HIL_SENSOR carries, and their bits of `fields_updated`.
-const MASKS: [(SensorKind, u32); 4] = [
+const MASKS: [(SensorKind, u32); 5] = [
     (SensorKind::Gyro, hil_sensor::GYRO),
     (SensorKind::Accel, hil_sensor::ACCEL),
     (SensorKind::Mag, hil_sensor::MAG),
     (SensorKind::Baro, hil_sensor::PRESSURE),
+    (SensorKind::Airspeed, hil_sensor::DIFF_PRESSURE),
 ];
-const KINDS: u8 = 0b1111;
+const KINDS: u8 = 0b10_1111;
 
 pub(super) struct Mavlink {
     version: Version,
@@ -132,13 +133,14 @@ impl Mavlink {
         let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
         let baro = self.newest.values[SensorKind::Baro as usize];
         let absolute = pressure(&self.newest.values, SensorKind::Baro);
+        let differential = pressure(&self.newest.values, SensorKind::Airspeed);
         Message::HilSensor(hil_sensor::Repr {
             time_usec: t.0 as u64 / 1000,
             accel: value(SensorKind::Accel, 1.0),
             gyro: value(SensorKind::Gyro, 1.0),
             mag: value(SensorKind::Mag, MICROTESLA_A_GAUSS),
             abs_pressure: absolute.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
-            diff_pressure: 0.0,
+            diff_pressure: differential.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
             pressure_alt: absolute.map_or(0.0, |pascals| pressure_altitude(pascals) as f32),
             temperature: temperature.or(baro.map(|reading| reading.temperature)).unwrap_or(0.0) as f32,
             fields_updated: fresh.fold(0, |mask, bits| mask | bits),

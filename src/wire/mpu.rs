@@ -100,7 +100,7 @@ impl Mpu {
     /// The newest reading by itself; nothing of a sensor that no chip of these has.
     fn alone(&self, kind: SensorKind) -> Option<mpu::Packet> {
         Some(match kind {
-            SensorKind::Baro | SensorKind::Gps => return None,
+            SensorKind::Baro | SensorKind::Gps | SensorKind::Airspeed => return None,
             SensorKind::Gyro => mpu::Packet::Gyro(gyro::Repr { gyro: self.counts(kind) }),
             SensorKind::Accel => mpu::Packet::Accel(accel::Repr { accel: self.counts(kind) }),
             SensorKind::Mag => {

@@ -70,7 +70,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("listen", &["link", "wire", "clock", "sensor", "report", "interrupt"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
-    ("dataset", &["player", "scene", "sensor", "motion", "parallel", "earth"]),
+    ("dataset", &["player", "scene", "sensor", "motion", "parallel"]),
     ("study", &["player", "motion", "scene", "sensor", "parallel", "os"]),
     ("parallel", &[]),
     (
