@@ -7,9 +7,11 @@ use super::*;
 use crate::clock::{Clock, VirtualClock};
 use crate::link::Far;
 use crate::scene::Overload;
+use crate::time::SimTime;
 use crate::wire::Protocol;
 use crate::wire::samples::{Counts, Samples};
-use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 
 const MS: i64 = 1_000_000;
 /// 1 kHz gyro and accel, 100 Hz mag, for a second, to one output.

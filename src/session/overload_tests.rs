@@ -7,9 +7,10 @@ use super::tests::{memory, plan, produce};
 use super::*;
 use crate::clock::Clock;
 use crate::link::{Far, Sender};
-use crate::scene::Overload;
+use crate::scene::{Output, Overload};
 use proptest::prelude::*;
-use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 
 const MS: i64 = 1_000_000;
 const POLICIES: [Overload; 3] = [Overload::DropNewest, Overload::DropOldest, Overload::Stretch];

@@ -11,11 +11,13 @@ use crate::clock::Clock;
 use crate::geometry::Attitude;
 use crate::link::Far;
 use crate::player::{BLOCK, Player};
-use crate::scene::Overload;
+use crate::scene::{Output, Overload, Plan};
 use crate::sensor::SensorKind;
+use crate::time::SimTime;
 use crate::wire::dialogue::{Dialogue, Estimate, Said, Stage, Stamp};
 use std::convert::Infallible;
-use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 use std::thread;
 
 const MS: i64 = 1_000_000;

@@ -4,9 +4,12 @@ use super::*;
 use crate::clock::{Clock, VirtualClock};
 use crate::link::{self, Far, Sender};
 use crate::player::Player;
-use crate::scene::Overload;
+use crate::scene::{Output, Overload, Plan};
 use crate::wire::{self, Protocol, Setup};
 use std::convert::Infallible;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 /// 1 kHz gyro and accel, 100 Hz mag, for a second.
 pub(super) const SCENE: &str = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";

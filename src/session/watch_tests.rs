@@ -8,7 +8,8 @@ use super::*;
 use crate::clock::{Clock, Policy, Precise, VirtualClock, WallClock};
 use crate::scene::Overload;
 use crate::sensor::SensorKind;
-use crate::time::Rate;
+use crate::time::{Rate, SimTime};
+use std::sync::atomic::Ordering;
 
 const MILLI: i64 = 1_000_000;
 
