@@ -12,48 +12,60 @@
 //! Two times go by. *Stream time* is what packets are due at, from the first one on. *Scene time* begins when the
 //! scene does: at once, or after a rest in which the vehicle is held still for the other side's estimator to settle.
 
-mod answers;
+mod absence;
+mod account;
 mod command;
 mod control;
 mod ears;
+mod effort;
 mod error;
 mod event;
 #[cfg(test)]
 mod fault_tests;
-mod finish;
+mod feed;
+mod gaps;
 mod granted;
+mod heard;
 mod hold;
 mod job;
-mod links;
-mod lockstep;
+mod lane;
+mod left;
+mod off;
+mod open;
 mod outcome;
-mod overload;
+mod outside;
 #[cfg(test)]
 mod overload_tests;
+mod pace;
 mod pacer;
+mod pacing;
 mod producer;
+mod producing;
+mod queue;
 mod replies;
 #[cfg(test)]
 mod session_tests;
 mod shared;
+mod side;
+mod step;
 mod talk;
 #[cfg(test)]
 mod talk_tests;
 mod tally;
 #[cfg(test)]
 mod tests;
-mod waiting;
 mod watch;
 #[cfg(test)]
 mod watch_tests;
 
-pub use answers::{Judging, Off};
 pub use control::run;
 pub use error::SessionError;
 pub use event::{Event, Progress};
+pub use heard::Judging;
 pub use job::{Job, OnBytes, Tap};
+pub use off::Off;
 pub use outcome::Outcome;
-pub use pacer::Speed;
+pub use pace::Speed;
 pub use watch::{Record, Watch, Watched};
 
 use shared::{Item, Shared};

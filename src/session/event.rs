@@ -1,6 +1,6 @@
 //! What a run tells while it goes on.
 
-use super::answers::Off;
+use super::off::Off;
 use crate::time::SimTime;
 use std::time::Duration;
 

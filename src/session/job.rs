@@ -1,7 +1,7 @@
 //! What to run.
 
-use super::answers::Judging;
-use super::pacer::Speed;
+use super::heard::Judging;
+use super::pace::Speed;
 use super::watch::Watch;
 use crate::link::Address;
 use crate::scene::{Output, Plan};

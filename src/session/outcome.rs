@@ -7,7 +7,7 @@ use crate::score::Figures;
 use crate::time::SimTime;
 
 /// What came of it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Outcome {
     /// Scene time reached: the end, or where it was stopped.
     pub played: SimTime,

@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 /// A packet on its way to one of the outputs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
-    pub output: usize,
+    /// Which output's.
+    pub lane: usize,
     pub packet: Packet,
 }
 
@@ -45,6 +46,16 @@ impl Shared {
     pub(super) fn scene_time(&self, stream: SimTime) -> Option<SimTime> {
         let starts = SimTime(self.scene_starts_ns.load(Ordering::Acquire));
         (stream >= starts).then(|| stream - starts)
+    }
+
+    /// Stream time at which the packet was due that was sent last.
+    pub(super) fn sent(&self) -> SimTime {
+        SimTime(self.stream_ns.load(Ordering::Relaxed))
+    }
+
+    /// For how long the vehicle was held still, so far.
+    pub(super) fn rest(&self) -> SimTime {
+        SimTime(self.scene_starts_ns.load(Ordering::Relaxed)).min(self.sent())
     }
 
     /// Whether everything is to end.
