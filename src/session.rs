@@ -14,6 +14,7 @@
 
 mod absence;
 mod account;
+mod budget;
 mod command;
 mod control;
 mod ears;
@@ -27,6 +28,7 @@ mod gaps;
 mod granted;
 mod heard;
 mod hold;
+mod host;
 mod job;
 mod lane;
 mod left;
@@ -57,7 +59,9 @@ mod tests;
 mod watch;
 #[cfg(test)]
 mod watch_tests;
+mod ways_out;
 
+pub use budget::{Budget, afford};
 pub use control::run;
 pub use error::SessionError;
 pub use event::{Event, Progress};

@@ -29,7 +29,6 @@ impl Account {
             name: sensor.kind.name().to_string(),
             rate_hz: sensor.rate.as_hz(),
             sent_hz: sent_hz.filter(|_| paced),
-            received_hz: None,
             made: sum(|it, kind| it.made.samples[kind]),
             sent: all.sent,
             dropped: all.dropped,
@@ -38,7 +37,7 @@ impl Account {
             late_us: all.late.late().filter(|_| paced),
             interval_us: all.interval.interval().filter(|_| paced),
             write_us: all.write.spread(),
-            timing: None,
+            ..SensorReport::default()
         }
     }
 }

@@ -364,6 +364,7 @@ impl Control {
         let outputs = || self.outputs.iter().zip(accounts);
         let links = outputs().zip(&talk.sides);
         Outcome {
+            speed: self.job.speed,
             sensors: plan.sensors.iter().map(|it| Account::sensor(accounts, it, paced)).collect(),
             links: links.map(|((output, account), side)| output.report(account, side)).collect(),
             faults: outputs().flat_map(|(it, account)| account.made.fired(&it.output)).collect(),
@@ -379,7 +380,7 @@ impl Control {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Judging, Speed};
+    use super::super::Speed;
     use super::*;
     use crate::scene::{Output, Plan};
     use std::fs::OpenOptions;
@@ -393,21 +394,8 @@ mod tests {
         let plan = Arc::new(Plan::parse(scene, "test", "test", &[]).unwrap());
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("imu");
-        let job = Job {
-            end: plan.duration,
-            plan,
-            outputs: vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())],
-            rest: None,
-            ground: None,
-            speed: Speed::Max,
-            wait: Duration::from_secs(60),
-            command: Vec::new(),
-            keep_stdout: false,
-            judging: Judging::default(),
-            cpu: None,
-            watch: None,
-            tap: None,
-        };
+        let outputs = vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())];
+        let job = Job { speed: Speed::Max, wait: Duration::from_secs(60), ..Job::new(plan, outputs) };
         let read_a_while = move || {
             // Away for less than is allowed, it may come back.
             for _ in 0..2 {

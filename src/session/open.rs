@@ -118,8 +118,8 @@ impl OpenOutput {
             replies: tally.replies + side.replies(),
             faults: made.by_fault(&self.output),
             crc_errors: side.damaged(),
-            lost_seq: None,
             broken: self.broken(account),
+            ..LinkReport::default()
         }
     }
 

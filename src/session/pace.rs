@@ -20,7 +20,22 @@ pub enum Speed {
     Max,
 }
 
+impl Default for Speed {
+    /// Real time.
+    fn default() -> Speed {
+        Speed::Times(1.0)
+    }
+}
+
 impl Speed {
+    /// As in a report: a number, or `max`.
+    pub(super) fn report(self) -> serde_json::Value {
+        match self {
+            Speed::Times(times) => times.into(),
+            Speed::Max => "max".into(),
+        }
+    }
+
     /// Whether packets wait for their due time.
     pub(super) fn is_paced(self) -> bool {
         self != Speed::Max

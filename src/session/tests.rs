@@ -209,21 +209,8 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
         let plan = Arc::new(plan(SCENE));
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("packets");
-        let job = Job {
-            plan: plan.clone(),
-            outputs: vec![output(&format!("{protocol}@file:{}", path.display()))],
-            end: plan.duration,
-            rest: None,
-            ground: None,
-            speed: Speed::Max,
-            wait: Duration::from_secs(1),
-            command: Vec::new(),
-            keep_stdout: false,
-            judging: Judging::default(),
-            cpu: None,
-            watch: None,
-            tap: None,
-        };
+        let outputs = vec![output(&format!("{protocol}@file:{}", path.display()))];
+        let job = Job { speed: Speed::Max, wait: Duration::from_secs(1), ..Job::new(plan.clone(), outputs) };
         let outcome = run(job, &mut |_| {}).unwrap();
         assert_eq!(outcome.played, plan.duration);
         for block in [1, 7, 4096] {
