@@ -5,7 +5,7 @@ use ratetable::motion::Truth;
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::{Output, Plan};
 use ratetable::sensor::Reading;
-use ratetable::session::{self, Event, Job, Judging, Speed};
+use ratetable::session::{self, Event, Job, Speed};
 use ratetable::wire::{self, Now, Options, Protocol, Setup};
 use std::convert::Infallible;
 use std::hint::black_box;
@@ -92,21 +92,8 @@ fn end_to_end(criterion: &mut Criterion) {
 }
 
 fn run(plan: &Arc<Plan>, to: &str) -> u64 {
-    let job = Job {
-        plan: plan.clone(),
-        outputs: vec![Output::to(to.parse().expect("a destination"))],
-        end: plan.duration,
-        speed: Speed::Max,
-        wait: Duration::from_secs(10),
-        command: Vec::new(),
-        keep_stdout: false,
-        rest: None,
-        ground: None,
-        judging: Judging::default(),
-        cpu: None,
-        watch: None,
-        tap: None,
-    };
+    let outputs = vec![Output::to(to.parse().expect("a destination"))];
+    let job = Job { speed: Speed::Max, wait: Duration::from_secs(10), ..Job::new(plan.clone(), outputs) };
     let mut reader = None;
     let outcome = session::run(job, &mut |event| {
         if let Event::Ready(name) = event

@@ -1,6 +1,5 @@
 //! The command line: one file a command.
 
-mod budget;
 mod check;
 mod clash;
 mod demo;

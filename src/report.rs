@@ -22,7 +22,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// A run's report, one JSON object.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// The program's version.
     pub version: String,
@@ -55,6 +55,19 @@ pub struct Report {
     pub attitude: Option<AttitudeReport>,
 }
 
+impl Report {
+    /// Of a scene of which nothing has been played yet.
+    pub fn new(scene: &str, seed: u64) -> Report {
+        Report {
+            version: env!("CARGO_PKG_VERSION").into(),
+            ok: true,
+            scene: scene.into(),
+            seed,
+            ..Report::default()
+        }
+    }
+}
+
 /// How well somebody knew the attitude.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AttitudeReport {
@@ -66,7 +79,7 @@ pub struct AttitudeReport {
 }
 
 /// What a run ran on.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Host {
     /// Name and release.
     pub kernel: String,
@@ -83,6 +96,15 @@ pub struct Host {
     pub pacing: Option<PacingReport>,
 }
 
+impl Host {
+    /// This machine, with so many processors for this process; nothing was paced on it.
+    pub fn new(cpus: usize) -> Host {
+        let name = rustix::system::uname();
+        let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());
+        Host { kernel, cpus, clock: "CLOCK_MONOTONIC", ..Host::default() }
+    }
+}
+
 /// How the pacing thread waited.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct PacingReport {
@@ -96,7 +118,7 @@ pub struct PacingReport {
 }
 
 /// One sensor.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct SensorReport {
     /// `gyro`, `accel`, `mag`.
     pub name: String,
@@ -126,6 +148,21 @@ pub struct SensorReport {
     /// What `timing` adds.
     #[serde(flatten)]
     pub timing: Option<SensorTiming>,
+}
+
+impl SensorReport {
+    /// With every field that a run can have, for limits to be checked against.
+    pub fn shape(name: &str, rate_hz: f64) -> SensorReport {
+        SensorReport {
+            name: name.into(),
+            rate_hz,
+            received_hz: Some(0.0),
+            late_us: Some(Late::default()),
+            interval_us: Some(Interval::default()),
+            write_us: Some(Spread::default()),
+            ..SensorReport::default()
+        }
+    }
 }
 
 /// Lateness, µs.
@@ -172,7 +209,7 @@ pub struct Spread {
 }
 
 /// One link.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct LinkReport {
     /// `PROTOCOL@LINK` as asked for.
     pub to: String,
@@ -214,6 +251,21 @@ pub struct LinkReport {
     /// Why it takes nothing any more.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub broken: Option<String>,
+}
+
+impl LinkReport {
+    /// With every field that a run can have, for limits to be checked against; it has these kinds of faults.
+    pub fn shape(to: &str, overload: &str, faults: impl Iterator<Item = &'static str>) -> LinkReport {
+        LinkReport {
+            to: to.into(),
+            name: to.into(),
+            overload: overload.into(),
+            queue_bytes: Some(0),
+            gaps: Some(Gaps::default()),
+            faults: faults.map(|kind| (kind, 0)).collect(),
+            ..LinkReport::default()
+        }
+    }
 }
 
 /// A port that was unplugged while packets were sent.

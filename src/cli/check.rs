@@ -4,11 +4,11 @@ mod effects;
 mod json;
 mod text;
 
-use super::budget::Budget;
 use super::{Refusal, Verdict, generate, options, say};
 use crate::motion::method::Choice;
 use crate::scene::{Drawn, Plan, Reference, Runs};
 use crate::sensor::{SensorPlan, TERMS, lsb, white_noise};
+use crate::session::Budget;
 use crate::wire;
 
 #[derive(Debug, clap::Args)]

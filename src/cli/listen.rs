@@ -5,8 +5,9 @@ use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::dataset::{self, Holds};
 use crate::link::{self, Address};
 use crate::listen::{self, Event, Heard, Job, Meter};
+use crate::parallel;
 use crate::report::chart::{Distribution, Histogram, Marker, histogram};
-use crate::report::{HeardLink, HeardReport, HeardSensor, Interval, Late, Limit, number};
+use crate::report::{HeardLink, HeardReport, HeardSensor, Host, Limit, number};
 use crate::scene::Destination;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
@@ -60,7 +61,8 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
         address => address.baud(),
     };
     let heard = hear(&job, span.unwrap_or(SimTime::FOREVER))?;
-    let report = report(&arguments.from, &heard, baud, &arguments.limit)?;
+    let mut report = report(&arguments.from, &heard, baud);
+    report.judge(&arguments.limit)?;
     tell(&summary::heard(&report, heard.interrupted));
     if let Some(dir) = &arguments.out {
         let json = serde_json::to_string_pretty(&report)? + "\n";
@@ -89,64 +91,18 @@ fn hear(job: &Job, end: SimTime) -> Result<Heard, Refusal> {
 
 /// A report with every field that a stream can have: limits are checked against it before anything is opened.
 pub(super) fn shape(from: &Destination) -> HeardReport {
-    let sensor = |name: String| HeardSensor {
-        name,
-        rate_hz: Some(0.0),
-        received_hz: Some(0.0),
-        missing: Some(0),
-        longest_step_s: Some(0.0),
-        burst_share: Some(0.0),
-        interval_us: Some(Interval::default()),
-        sample_interval_us: Some(Interval::default()),
-        jitter_us: Some(Late::default()),
-        ..HeardSensor::default()
-    };
     let more = |kind: SensorKind| (2..=4).map(move |n| format!("{kind}-{n}"));
     let names = SensorKind::ALL.into_iter().flat_map(|kind| [kind.to_string()].into_iter().chain(more(kind)));
     let link = HeardLink { to: from.to_string(), stamp_steps: Some(0), ..HeardLink::default() };
-    empty(names.map(sensor).collect(), vec![link])
+    HeardReport::new(Host::new(parallel::all_cores()), names.map(HeardSensor::shape).collect(), link)
 }
 
-fn empty(sensors: Vec<HeardSensor>, links: Vec<HeardLink>) -> HeardReport {
-    HeardReport {
-        version: env!("CARGO_PKG_VERSION").into(),
-        ok: true,
-        failed: Vec::new(),
-        duration_s: None,
-        host: super::run::host(false, false, None),
-        sensors,
-        links,
-    }
-}
-
-fn report(
-    from: &Destination,
-    heard: &Heard,
-    baud: Option<u32>,
-    limits: &[Limit],
-) -> Result<HeardReport, Refusal> {
+/// What was heard; `baud` is what the link carries, where it has a speed.
+fn report(from: &Destination, heard: &Heard, baud: Option<u32>) -> HeardReport {
     let meter = &heard.meter;
-    let links = vec![meter.link(from.to_string(), heard.name.clone(), baud)];
-    let mut report = HeardReport { duration_s: meter.duration_s(), ..empty(meter.sensors(), links) };
-    let value = serde_json::to_value(&report)?;
-    report.failed = faults(&report);
-    report.failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
-    report.ok = report.failed.is_empty();
-    Ok(report)
-}
-
-/// What was lost or damaged, and a stream that has no samples at all.
-fn faults(report: &HeardReport) -> Vec<String> {
-    let mut faults = Vec::new();
-    for (i, link) in report.links.iter().enumerate() {
-        let counts = [("lost_seq", link.lost_seq.unwrap_or(0)), ("crc_errors", link.crc_errors)];
-        let some = counts.into_iter().filter(|(_, count)| *count > 0);
-        faults.extend(some.map(|(name, count)| format!("links.{i}.{name} = {count} > 0")));
-    }
-    if report.sensors.is_empty() {
-        faults.push("no packet carried a sample of gyro, accel or mag".into());
-    }
-    faults
+    let link = meter.link(from.to_string(), heard.name.clone(), baud);
+    let report = HeardReport::new(Host::new(parallel::all_cores()), meter.sensors(), link);
+    HeardReport { duration_s: meter.duration_s(), ..report }
 }
 
 /// How the intervals between arrivals are spread, by sensor.

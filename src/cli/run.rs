@@ -1,21 +1,15 @@
 //! `ratetable run`: a scene in real time.
 
-use super::budget::Budget;
 use super::clash::{self, Besides};
 use super::demo::{Firmware, Received};
 use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::link::Address;
-use crate::report::{
-    AttitudeReport, Gaps, Host, Interval, Late, Limit, LinkReport, PacingReport, Report, SensorReport, Spread,
-};
-use crate::scene::{Destination, Output, OutputFault, Overload, Plan};
-use crate::score::Figures;
+use crate::report::Limit;
+use crate::scene::{Destination, Output, OutputFault, Plan};
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
-use serde_json::Value;
-use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -75,46 +69,20 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
-    let plan = plan(arguments)?;
-    let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
-    let demonstration = outputs.is_empty();
-    let mut outputs = if demonstration { vec![demo_output()] } else { outputs };
-    for idle in OutputFault::equip(&plan.output_faults, &mut outputs) {
-        tell(&format!("warning: the fault {idle} concerns no output of this run"));
-    }
-    let limits = options::limits(&arguments.limit, &plan)?;
-    let mut report = shape(&plan, &outputs);
-    let as_json = serde_json::to_value(&report)?;
-    limits.iter().try_for_each(|limit| limit.check(&as_json))?;
-    refuse(arguments, &plan, &outputs)?;
-    let plan = Arc::new(plan);
-    let estimator = estimator(demonstration, &outputs);
-    let fed = outputs.iter().any(|output| output.to.target.is_some());
-    let job = Job {
-        plan: plan.clone(),
-        end: arguments.span.unwrap_or(plan.duration),
-        rest: rest(arguments.rest, &outputs),
-        ground: ground(arguments.qgc.clone(), &outputs)?,
-        judging: Judging { align: arguments.align.into(), settle: arguments.settle },
-        outputs,
-        speed: arguments.speed,
-        wait: arguments.wait,
-        command: arguments.command.clone(),
-        keep_stdout: arguments.json,
-        cpu: arguments.cpu,
-        watch: None,
-        tap: None,
-    };
-    let (outcome, received) = play(job, &plan, demonstration)?;
-    fill(&mut report, &outcome, arguments.speed);
-    report.attitude =
-        outcome.attitude.clone().map(|figures| AttitudeReport { estimator: estimator.clone(), figures });
-    report.faults = [plan.faults_until(outcome.played), outcome.faults.clone()].concat();
+    let (mut job, demonstration) = job(arguments, plan(arguments)?);
+    let limits = options::limits(&arguments.limit, &job.plan)?;
+    let shape = serde_json::to_value(job.shape())?;
+    limits.iter().try_for_each(|limit| limit.check(&shape))?;
+    refuse(arguments, &job)?;
+    job.ground = ground(arguments.qgc.clone(), &job)?;
+    let (plan, target) = (job.plan.clone(), job.target());
+    let (outcome, received) = play(job, demonstration)?;
+    let estimator = target.map_or(if demonstration { "vqf" } else { "firmware" }, |target| target.name);
+    let mut report = outcome.report(&plan, estimator);
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
-    let ended = Ended { command: outcome.command, interrupted: outcome.interrupted, fed };
-    judge(&mut report, &limits, &ended)?;
+    outcome.judge(&mut report, &limits, target.is_some())?;
     tell(&summary::run(&report, &outcome));
     if let Some(dir) = &arguments.out {
         super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
@@ -128,6 +96,29 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
         _ if report.ok => Verdict::Fine,
         _ => Verdict::Failed,
     })
+}
+
+/// What is to be run, but for a ground station, and whether it is the demonstration.
+fn job(arguments: &Arguments, plan: Plan) -> (Job, bool) {
+    let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
+    let demonstration = outputs.is_empty();
+    let mut outputs = if demonstration { vec![demo_output()] } else { outputs };
+    for idle in OutputFault::equip(&plan.output_faults, &mut outputs) {
+        tell(&format!("warning: the fault {idle} concerns no output of this run"));
+    }
+    let whole = Job::new(Arc::new(plan), outputs);
+    let job = Job {
+        end: arguments.span.unwrap_or(whole.end),
+        rest: arguments.rest.or(whole.rest),
+        judging: Judging { align: arguments.align.into(), settle: arguments.settle },
+        speed: arguments.speed,
+        wait: arguments.wait,
+        command: arguments.command.clone(),
+        keep_stdout: arguments.json,
+        cpu: arguments.cpu,
+        ..whole
+    };
+    (job, demonstration)
 }
 
 /// The scene that is asked for, or the first target's, or the demonstration's.
@@ -148,17 +139,10 @@ fn plan(arguments: &Arguments) -> Result<Plan, Refusal> {
     Ok(Plan::load(scene, &settings.chain(arguments.set.iter().cloned()).collect::<Vec<_>>())?)
 }
 
-/// How long the vehicle is held still first: as told, or what the most demanding target needs.
-fn rest(told: Option<SimTime>, outputs: &[Output]) -> Option<SimTime> {
-    let needed = outputs.iter().filter_map(|output| Some(output.to.target?.rest)).max();
-    told.or(needed)
-}
-
 /// A ground station's address, and the output that it listens in on.
-fn ground(address: Option<Address>, outputs: &[Output]) -> Result<Option<(Address, usize)>, Refusal> {
+fn ground(address: Option<Address>, job: &Job) -> Result<Option<(Address, usize)>, Refusal> {
     let Some(address) = address else { return Ok(None) };
-    let with = outputs.iter().position(|output| output.to.protocol == Protocol::Mavlink);
-    with.map(|with| Some((address, with))).ok_or_else(|| {
+    job.mavlink().map(|with| Some((address, with))).ok_or_else(|| {
         Refusal(
             "--qgc passes on MAVLink, and no output speaks it: add, for example, --to px4@/dev/ttyACM0"
                 .into(),
@@ -166,18 +150,12 @@ fn ground(address: Option<Address>, outputs: &[Output]) -> Result<Option<(Addres
     })
 }
 
-/// What the estimator on the other side is called.
-fn estimator(demonstration: bool, outputs: &[Output]) -> String {
-    let target = outputs.iter().find_map(|output| output.to.target);
-    target.map_or(if demonstration { "vqf" } else { "firmware" }, |target| target.name).into()
-}
-
 fn demo_output() -> Output {
     Output::to(Destination::new(Protocol::Mpu, Address::Pty { path: None, baud: None }))
 }
 
 /// What cannot go together, before anything is opened.
-fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), Refusal> {
+fn refuse(arguments: &Arguments, Job { plan, outputs, .. }: &Job) -> Result<(), Refusal> {
     if arguments.json && outputs.iter().any(|output| output.to.address.is_stdout()) {
         return Err(Refusal("--json prints the report on standard output, where `-` already sends packets: leave out one of the two".into()));
     }
@@ -200,37 +178,15 @@ fn refuse(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), 
     let besides =
         Besides { out: arguments.out.as_deref(), ground: arguments.qgc.as_ref(), report: arguments.json };
     clash::outputs(plan, outputs, &besides)?;
+    let warn = &mut |warning| tell(&format!("warning: {warning}"));
     match arguments.speed {
-        Speed::Times(times) => afford(plan, outputs, times, arguments.force),
+        Speed::Times(times) => session::afford(plan, outputs, times, arguments.force, warn).map_err(Refusal),
         Speed::Max => Ok(()),
     }
 }
 
-/// Every output that its link does not carry is refused, unless its user wants it so.
-fn afford(plan: &Plan, outputs: &[Output], speed: f64, force: bool) -> Result<(), Refusal> {
-    let mut refused = Vec::new();
-    for output in outputs.iter().filter(|output| output.to.address.baud().is_some()) {
-        let budget = Budget::of(plan, output, speed);
-        match (budget.fits(), force || !refuses(output)) {
-            (true, _) => {}
-            (false, false) => refused.push(budget.to_string()),
-            (false, true) => {
-                let stretched = output.overload == Overload::Stretch;
-                let but = if stretched { "scene time is stretched" } else { "the rest is lost" };
-                tell(&format!("warning: {}; {but}", budget.arithmetic()));
-            }
-        }
-    }
-    if refused.is_empty() { Ok(()) } else { Err(Refusal(refused.join("\n"))) }
-}
-
-/// Whether an output that its link does not carry would lose packets that nobody has given up.
-fn refuses(output: &Output) -> bool {
-    !output.force && output.overload != Overload::Stretch
-}
-
-fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {
-    let bar = Bar::new(job.end);
+fn play(job: Job, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {
+    let (bar, plan) = (Bar::new(job.end), job.plan.clone());
     let (mut firmware, mut held) = (None, false);
     let outcome = session::run(job, &mut |event| match event {
         Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
@@ -239,7 +195,7 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
             if demonstration {
                 let path = name.split_once('@').map_or(name, |(_, path)| path);
                 bar.line("demonstration: a driver and an AHRS (VQF) open that pty as firmware would");
-                firmware = Some(Firmware::start(path, plan));
+                firmware = Some(Firmware::start(path, &plan));
             }
         }
         Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
@@ -263,135 +219,11 @@ fn play(job: Job, plan: &Arc<Plan>, demonstration: bool) -> Result<(Outcome, Opt
     Ok((outcome, received))
 }
 
-/// A report with every field that a run can have: limits are checked against it before anything is opened.
-pub(super) fn shape(plan: &Plan, outputs: &[Output]) -> Report {
-    let sensor = |sensor: &crate::sensor::SensorPlan| SensorReport {
-        name: sensor.kind.name().into(),
-        rate_hz: sensor.rate.as_hz(),
-        sent_hz: None,
-        received_hz: Some(0.0),
-        made: 0,
-        sent: 0,
-        dropped: 0,
-        replaced: 0,
-        queued: 0,
-        late_us: Some(Late::default()),
-        interval_us: Some(Interval::default()),
-        write_us: Some(Spread::default()),
-        timing: None,
-    };
-    let link = |output: &Output| LinkReport {
-        to: output.to.to_string(),
-        name: output.to.to_string(),
-        made: 0,
-        sent: 0,
-        packets: 0,
-        bytes: 0,
-        dropped: 0,
-        queued: 0,
-        overload: output.overload.name().into(),
-        queue_bytes: Some(0),
-        utilisation: None,
-        paced_baud: None,
-        gaps: Some(Gaps::default()),
-        replies: 0,
-        faults: output.faults.iter().map(|fault| (fault.kind.name(), 0)).collect(),
-        crc_errors: 0,
-        lost_seq: None,
-        broken: None,
-    };
-    Report {
-        version: env!("CARGO_PKG_VERSION").into(),
-        ok: true,
-        failed: Vec::new(),
-        scene: plan.name.clone(),
-        seed: plan.seed,
-        duration_s: 0.0,
-        rest_s: 0.0,
-        stretched_s: 0.0,
-        speed: Value::Null,
-        faults: plan.faults_until(SimTime::FOREVER),
-        host: host(false, false, Some(PacingReport::default())),
-        sensors: plan.sensors.iter().map(sensor).collect(),
-        links: outputs.iter().map(link).collect(),
-        attitude: Some(AttitudeReport { estimator: String::new(), figures: Figures::shape() }),
-    }
-}
-
-/// What this runs on, what the pacing thread was granted, and how it waited.
-pub fn host(realtime: bool, memory_locked: bool, pacing: Option<PacingReport>) -> Host {
-    let name = rustix::system::uname();
-    let cpus = std::thread::available_parallelism().map_or(1, |cpus| cpus.get());
-    let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());
-    Host { kernel, cpus, realtime, memory_locked, clock: "CLOCK_MONOTONIC", pacing }
-}
-
-pub(super) fn fill(report: &mut Report, outcome: &Outcome, speed: Speed) {
-    report.duration_s = outcome.played.seconds();
-    report.rest_s = outcome.rest_s;
-    report.stretched_s = outcome.stretched_s;
-    report.speed = match speed {
-        Speed::Times(times) => times.into(),
-        Speed::Max => "max".into(),
-    };
-    report.host = host(outcome.realtime, outcome.memory_locked, outcome.pacing);
-    report.sensors = outcome.sensors.clone();
-    report.links = outcome.links.clone();
-}
-
-/// How a run came to its end.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Ended {
-    /// The exit code of the command that was run.
-    pub command: Option<i32>,
-    /// Whether the user ended it.
-    pub interrupted: bool,
-    /// Whether a controller chose how many packets it gets.
-    pub fed: bool,
-}
-
-/// Losses, broken limits, a command that failed, and a run that never was.
-pub(super) fn judge(report: &mut Report, limits: &[Limit], ended: &Ended) -> Result<(), Refusal> {
-    // A reader of standard output that has enough, as `head` has, loses nothing that anybody wants.
-    let quiet = |link: &LinkReport| is_stdout(link) && broken_by(link, ErrorKind::BrokenPipe);
-    let excused = report.links.iter().any(quiet)
-        && report.links.iter().all(|link| quiet(link) || (link.dropped == 0 && link.queued == 0));
-    // A controller that asks for fewer packets than there are samples loses none.
-    let given_up = |sensor: &SensorReport| if ended.fed { sensor.replaced } else { 0 };
-    let lost = report.sensors.iter().filter(|sensor| !excused && sensor.dropped > given_up(sensor));
-    let mut failed: Vec<_> =
-        lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect();
-    let broken = report.links.iter().filter(|link| !quiet(link));
-    failed.extend(broken.filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?))));
-    let code = ended.command.filter(|code| *code != 0);
-    failed.extend(code.map(|code| format!("the command ended with exit code {code}")));
-    let nothing = report.links.iter().all(|link| link.packets == 0);
-    if ended.command == Some(0) && nothing {
-        failed.push("the command ended before anything was sent: it must open the link, {} in its arguments or $RATETABLE_LINK".into());
-    } else if ended.interrupted && nothing {
-        failed.push("it was ended before anything was sent".into());
-    }
-    let value = serde_json::to_value(&*report)?;
-    failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
-    report.ok = failed.is_empty();
-    report.failed = failed;
-    Ok(())
-}
-
-fn is_stdout(link: &LinkReport) -> bool {
-    link.to.parse::<Destination>().is_ok_and(|to| to.address.is_stdout())
-}
-
-fn broken_by(link: &LinkReport, kind: ErrorKind) -> bool {
-    link.broken.as_ref().is_some_and(|broken| *broken == kind.to_string())
-}
-
 /// Whether standard output took the packets that were for it, as long as somebody read them.
 ///
 /// # Errors
 /// It did not, as of a full disk: what was to be there is not.
 pub(super) fn written_to_the_end(outcome: &Outcome) -> Result<(), Refusal> {
-    let refused = |link: &&LinkReport| is_stdout(link) && !broken_by(link, ErrorKind::BrokenPipe);
-    let broken = outcome.links.iter().filter(refused).find_map(|link| link.broken.clone());
-    broken.map_or(Ok(()), |why| Err(Refusal(format!("cannot write to standard output: {why}"))))
+    let why = outcome.unwritten().map(|why| format!("cannot write to standard output: {why}"));
+    why.map_or(Ok(()), |why| Err(Refusal(why)))
 }

@@ -6,27 +6,25 @@ mod ledger;
 mod reader;
 mod results;
 
-pub(super) use results::shape;
-
 use super::clash::{self, Besides};
 use super::progress::Bar;
-use super::run::{self, written_to_the_end};
+use super::run::written_to_the_end;
 use super::{Refusal, Verdict, options, say, tell};
 use crate::clock::WallClock;
 use crate::dataset::{self, DatasetError, Folder, Holds};
 use crate::link::Address;
-use crate::report::Limit;
+use crate::report::{Limit, TimingReport};
 use crate::scene::{Destination, Output, Plan};
-use crate::session::{self, Event, Job, Judging, Outcome, Speed, Tap, Watch};
+use crate::session::{self, Event, Job, Outcome, SessionError, Tap, Watch};
 use crate::time::{NANOS, Rate, SimTime};
 use crate::wire::{self, Protocol};
 use collector::Collector;
 use ledger::Ledger;
 use reader::{Arrivals, Came, Reader};
 use std::cell::RefCell;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::slice::from_ref;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -75,16 +73,19 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let plan = Plan::load(&arguments.scene, &arguments.set)?;
     let output = output(arguments, &plan)?;
     let limits = options::limits(&arguments.limit, &plan)?;
-    let mut report = shape(&plan, &output);
-    let as_json = serde_json::to_value(&report)?;
+    let job = job(arguments, Arc::new(plan), output);
+    let (plan, output) = (job.plan.clone(), &job.outputs[0]);
+    let shape = TimingReport::shape(job.shape());
+    let as_json = serde_json::to_value(&shape)?;
     limits.iter().try_for_each(|limit| limit.check(&as_json))?;
     wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
     let besides = Besides { out: arguments.out.as_deref(), ground: None, report: arguments.json };
-    clash::outputs(&plan, from_ref(&output), &besides)?;
+    clash::outputs(&plan, &job.outputs, &besides)?;
     let folder = arguments.out.as_ref().map(|dir| folder(dir, arguments.force)).transpose()?;
-    let measured = measure(arguments, Arc::new(plan), output, folder.as_ref())?;
-    results::fill(&mut report, &measured);
-    results::judge(&mut report, &limits, measured.outcome.interrupted)?;
+    let measured = measure(job, folder.as_ref())?;
+    let mut report = results::report(shape, &plan, &measured);
+    measured.outcome.judge(&mut report.run, &[], false)?;
+    report.judge(&limits)?;
     tell(&results::text(&report, measured.outcome.interrupted));
     if let (Some(folder), Some(dir)) = (folder, &arguments.out) {
         let picture = charts::timing(&report, &measured.ledger, &measured.bare());
@@ -98,6 +99,18 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
     }
     written_to_the_end(&measured.outcome)?;
     Ok(if report.run.ok { Verdict::Fine } else { Verdict::Failed })
+}
+
+/// What is to be run, but for who watches.
+fn job(arguments: &Arguments, plan: Arc<Plan>, output: Output) -> Job {
+    Job {
+        end: arguments.span,
+        rest: None,
+        wait: WAIT,
+        keep_stdout: arguments.json,
+        cpu: arguments.cpu,
+        ..Job::new(plan, vec![output])
+    }
 }
 
 /// The output folder, begun.
@@ -148,57 +161,21 @@ impl Measured {
 }
 
 /// Streams, with somebody at the other end where there can be one.
-fn measure(
-    arguments: &Arguments,
-    plan: Arc<Plan>,
-    output: Output,
-    folder: Option<&Folder>,
-) -> Result<Measured, Refusal> {
+fn measure(mut job: Job, folder: Option<&Folder>) -> Result<Measured, Refusal> {
     let clock = WallClock::start();
     let (records, recorded) = rtrb::RingBuffer::new(collector::RING);
     let (ring, arrived) = rtrb::RingBuffer::new(collector::RING);
-    let far = Far::of(&output.to.address);
-    let rate = plan.sensors.first().map_or(Rate::hz(1000), |sensor| sensor.rate);
-    let ledger = Ledger::new(&plan, far != Far::Nobody, SLICE, 0);
+    let Destination { address, protocol, .. } = &job.outputs[0].to;
+    let far = Far::of(address);
+    let rate = job.plan.sensors.first().map_or(Rate::hz(1000), |sensor| sensor.rate);
+    let ledger = Ledger::new(&job.plan, far != Far::Nobody, SLICE, 0);
     let csv = folder.map(|folder| folder.file("timing.csv")).transpose()?;
     let collector = Collector::start(ledger, recorded, arrived, csv);
-    let mut arrivals = Some(Arrivals::new(output.to.protocol, clock, ring));
+    let mut arrivals = Some(Arrivals::new(*protocol, clock, ring));
     let heard = Rc::new(RefCell::new(Came::default()));
-    let tap = arrivals.take_if(|_| far == Far::Loopback).map(|arrivals| tap(arrivals, heard.clone()));
-    let job = Job {
-        end: arguments.span,
-        rest: None,
-        ground: None,
-        outputs: vec![output],
-        speed: Speed::Times(1.0),
-        wait: WAIT,
-        command: Vec::new(),
-        keep_stdout: arguments.json,
-        judging: Judging::default(),
-        cpu: arguments.cpu,
-        watch: Some(Watch { clock, slice: SLICE, rate, records }),
-        tap,
-        plan,
-    };
-    let bar = Bar::new(job.end);
-    let mut reader = None;
-    let outcome = session::run(job, &mut |event| match event {
-        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
-        Event::Ready(name) => {
-            bar.line(&format!("ready: {name}"));
-            if let (Far::Reader, Some(arrivals)) = (far, arrivals.take()) {
-                let path = name.split_once('@').map_or(name, |(_, path)| path);
-                reader = Some(Reader::start(path.into(), arrivals));
-            }
-        }
-        Event::Waiting { whom, left } => {
-            bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
-        }
-        Event::Ground(_) | Event::Silent(_) | Event::Still | Event::Started => {}
-        Event::Progress(progress) => bar.live(&progress),
-    });
-    bar.clear();
-    let came = reader.map(Reader::end).transpose();
+    job.tap = arrivals.take_if(|_| far == Far::Loopback).map(|arrivals| tap(arrivals, heard.clone()));
+    job.watch = Some(Watch { clock, slice: SLICE, rate, records });
+    let (outcome, came) = stream(job, arrivals.filter(|_| far == Far::Reader));
     let ledger = collector.end();
     let outcome = outcome?;
     let came = came.map_err(|error| Refusal(format!("the reader at the pty's other end failed: {error}")))?;
@@ -210,6 +187,32 @@ fn measure(
     let far =
         far.filter(|(_, came)| came.samples > 0 || ledger.sensors.iter().any(|sensor| sensor.received > 0));
     Ok(Measured { outcome, ledger, far, rate })
+}
+
+/// Runs the job, while a reader of a pty's other end, if there is to be one, takes in what arrives; what came of both.
+fn stream(
+    job: Job,
+    mut arrivals: Option<Arrivals>,
+) -> (Result<Outcome, SessionError>, io::Result<Option<Came>>) {
+    let bar = Bar::new(job.end);
+    let mut reader = None;
+    let outcome = session::run(job, &mut |event| match event {
+        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
+        Event::Ready(name) => {
+            bar.line(&format!("ready: {name}"));
+            if let Some(arrivals) = arrivals.take() {
+                let path = name.split_once('@').map_or(name, |(_, path)| path);
+                reader = Some(Reader::start(path.into(), arrivals));
+            }
+        }
+        Event::Waiting { whom, left } => {
+            bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
+        }
+        Event::Ground(_) | Event::Silent(_) | Event::Still | Event::Started => {}
+        Event::Progress(progress) => bar.live(&progress),
+    });
+    bar.clear();
+    (outcome, reader.map(Reader::end).transpose())
 }
 
 /// Reads back what a port sends to itself.

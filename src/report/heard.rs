@@ -1,11 +1,11 @@
 //! What was heard on a link: the report of `listen`, with the names of a run's where they mean the same.
 
-use super::{Host, Interval, Late};
+use super::{Host, Interval, Late, Limit};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The report of somebody's stream, one JSON object.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct HeardReport {
     /// The program's version.
     pub version: String,
@@ -21,6 +21,35 @@ pub struct HeardReport {
     pub sensors: Vec<HeardSensor>,
     /// The link that was listened to.
     pub links: Vec<HeardLink>,
+}
+
+impl HeardReport {
+    /// Of these sensors and this link, not judged yet.
+    pub fn new(host: Host, sensors: Vec<HeardSensor>, link: HeardLink) -> HeardReport {
+        let version = env!("CARGO_PKG_VERSION").into();
+        HeardReport { version, ok: true, host, sensors, links: vec![link], ..HeardReport::default() }
+    }
+
+    /// What was lost or damaged, a stream that has no samples at all, and broken limits.
+    ///
+    /// # Errors
+    /// The report cannot be written as JSON.
+    pub fn judge(&mut self, limits: &[Limit]) -> serde_json::Result<()> {
+        let value = serde_json::to_value(&*self)?;
+        let lost = self.links.iter().enumerate().flat_map(|(i, link)| {
+            let counts = [("lost_seq", link.lost_seq.unwrap_or(0)), ("crc_errors", link.crc_errors)];
+            let some = counts.into_iter().filter(|(_, count)| *count > 0);
+            some.map(move |(name, count)| format!("links.{i}.{name} = {count} > 0"))
+        });
+        let mut failed: Vec<_> = lost.collect();
+        if self.sensors.is_empty() {
+            failed.push("no packet carried a sample of gyro, accel or mag".into());
+        }
+        failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
+        self.ok = failed.is_empty();
+        self.failed = failed;
+        Ok(())
+    }
 }
 
 /// One sensor as the receiver sees it.
@@ -55,6 +84,24 @@ pub struct HeardSensor {
     /// How far the interval between two arrivals is from that between the two sample times, either way, µs: the
     /// error of dt for a receiver that takes the time of arrival for the time of the sample.
     pub jitter_us: Option<Late>,
+}
+
+impl HeardSensor {
+    /// With every field that there can be, for limits to be checked against.
+    pub fn shape(name: String) -> HeardSensor {
+        HeardSensor {
+            name,
+            rate_hz: Some(0.0),
+            received_hz: Some(0.0),
+            missing: Some(0),
+            longest_step_s: Some(0.0),
+            burst_share: Some(0.0),
+            interval_us: Some(Interval::default()),
+            sample_interval_us: Some(Interval::default()),
+            jitter_us: Some(Late::default()),
+            ..HeardSensor::default()
+        }
+    }
 }
 
 /// The link as the receiver sees it.

@@ -10,36 +10,51 @@ use tokio::process::{Child, Command};
 /// How long the program may go on after its link was closed, and after it was asked to end.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Starts it; `link` replaces every `{}` and is in `$RATETABLE_LINK`.
-pub(super) fn start(command: &[String], link: &str, keep_stdout: bool) -> Result<Child, SessionError> {
-    let [program, arguments @ ..] = command else {
-        unreachable!("only called with a command");
-    };
-    let place = |text: &String| text.replace("{}", link);
-    let mut start = Command::new(place(program));
-    start.args(arguments.iter().map(place)).env("RATETABLE_LINK", link).kill_on_drop(true);
-    if keep_stdout {
-        // Standard output is for our JSON: the program's joins ours on standard error.
-        start.stdout(rustix::io::dup(rustix::stdio::stderr()).map_or(Stdio::null(), Stdio::from));
+/// The program, if there is one.
+#[derive(Default)]
+pub(super) struct Program(Option<Child>);
+
+impl Program {
+    /// Starts a command, if there is one; `link` replaces every `{}` and is in `$RATETABLE_LINK`.
+    pub(super) fn start(command: &[String], link: &str, keep_stdout: bool) -> Result<Program, SessionError> {
+        let [program, arguments @ ..] = command else { return Ok(Program(None)) };
+        let place = |text: &String| text.replace("{}", link);
+        let mut start = Command::new(place(program));
+        start.args(arguments.iter().map(place)).env("RATETABLE_LINK", link).kill_on_drop(true);
+        if keep_stdout {
+            // Standard output is for our JSON: the program's joins ours on standard error.
+            start.stdout(rustix::io::dup(rustix::stdio::stderr()).map_or(Stdio::null(), Stdio::from));
+        }
+        let child = start.spawn();
+        let child = child.map_err(|source| SessionError::Command { program: program.clone(), source })?;
+        Ok(Program(Some(child)))
     }
-    start.spawn().map_err(|source| SessionError::Command { program: program.clone(), source })
+
+    /// Its exit code, once it has ended by itself; where there is none, its end never comes.
+    pub(super) async fn ended(&mut self) -> i32 {
+        match &mut self.0 {
+            Some(child) => child.wait().await.map_or(1, code),
+            None => std::future::pending().await,
+        }
+    }
+
+    /// Waits for it now that the run is over: `None` if there is none or it had to be ended.
+    pub(super) async fn end(self) -> Option<i32> {
+        let mut child = self.0?;
+        if let Ok(Ok(status)) = tokio::time::timeout(PATIENCE, child.wait()).await {
+            return Some(code(status));
+        }
+        if let Some(pid) = child.id().and_then(|id| Pid::from_raw(id as i32)) {
+            let _ = kill_process(pid, Signal::TERM);
+        }
+        if tokio::time::timeout(PATIENCE, child.wait()).await.is_err() {
+            let _ = child.kill().await;
+        }
+        None
+    }
 }
 
-/// Its exit code as a shell gives it: 128 + the signal that ended it.
-pub(super) fn code(status: ExitStatus) -> i32 {
+/// An exit code as a shell gives it: 128 + the signal that ended it.
+fn code(status: ExitStatus) -> i32 {
     status.code().unwrap_or_else(|| 128 + status.signal().unwrap_or(0))
-}
-
-/// Waits for it now that the run is over: `None` if it had to be ended.
-pub(super) async fn end(mut child: Child) -> Option<i32> {
-    if let Ok(Ok(status)) = tokio::time::timeout(PATIENCE, child.wait()).await {
-        return Some(code(status));
-    }
-    if let Some(pid) = child.id().and_then(|id| Pid::from_raw(id as i32)) {
-        let _ = kill_process(pid, Signal::TERM);
-    }
-    if tokio::time::timeout(PATIENCE, child.wait()).await.is_err() {
-        let _ = child.kill().await;
-    }
-    None
 }

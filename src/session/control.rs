@@ -1,40 +1,49 @@
-//! The control side of a run: opens links, starts the threads, listens, ends cleanly.
+//! The control side of a run: opens links, starts the threads, attends to the user and to the other sides, ends
+//! cleanly.
 
-use super::answers::Heard;
+use super::absence::Absence;
+use super::account::Account;
+use super::command::Program;
+use super::ears::Ears;
+use super::feed::Feed;
 use super::granted::Granted;
+use super::heard::Heard;
 use super::hold::Hold;
-use super::links::{LOOK, Lookout};
-use super::lockstep::{self, Step};
+use super::lane::Lane;
+use super::open::OpenOutput;
+use super::outside::Outside;
+use super::pace::Pace;
 use super::pacer::Pacer;
-use super::producer::{self, Encoders, Made, Task};
+use super::pacing::{LivePacer, Pacing};
+use super::producing::Producing;
+use super::side::Side;
 use super::talk::Talk;
 use super::watch::Watching;
-use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, command, ears};
+use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, step};
 use crate::clock::{Clock, Policy, Precise, WallClock};
-use crate::interrupt::Interrupt;
-use crate::link::{Link, Sender};
+use crate::link::Link;
 use crate::time::SimTime;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::thread::{self, JoinHandle};
 use std::time::Duration;
-use tokio::process::Child;
-use tokio::sync::oneshot;
-use tokio::time::Instant;
+use tokio::time::{Instant, interval, sleep};
 
 /// Packets made ahead, 2.6 MB: about a second of the fastest sensors, and seven at 1 kHz.
 const RING: usize = 8192;
-/// From the start of the pacing thread to stream time 0.
-const LEAD: i64 = 5_000_000;
 /// Between two reports of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
+/// Between two looks at the links.
+const LOOK: Duration = Duration::from_millis(20);
 /// Between two looks at what is due by itself in a conversation.
 pub(super) const TICK: Duration = Duration::from_millis(10);
-
 /// At full speed nothing moves without a reader; one who is away for so long has left for good.
 const ABSENCE: Duration = Duration::from_secs(5);
+/// For answers that are still on their way when the last packet is out.
+const LAST_ANSWERS: Duration = Duration::from_millis(200);
+/// A link that does not take a farewell for so long does not get it.
+const FAREWELL: Duration = Duration::from_secs(1);
 
 /// Runs a job to its end, to Ctrl-C or to the command's end, and tells `on` what happens meanwhile.
 ///
@@ -48,261 +57,206 @@ fn run_with(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Resul
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime =
         runtime.map_err(|source| SessionError::System { doing: "start the control loop", source })?;
-    tokio::task::LocalSet::new().block_on(&runtime, Run::go(job, absence, on))
+    tokio::task::LocalSet::new().block_on(&runtime, Control::go(job, absence, on))
 }
 
-pub(super) struct Run {
-    pub job: Job,
-    pub shared: Arc<Shared>,
-    pub clock: WallClock,
-    pub talk: Rc<RefCell<Talk>>,
-    pub interrupted: bool,
-    /// The command's exit code, once it has ended by itself.
-    pub ended: Option<i32>,
-    /// Whether what comes back on the first link goes to the job's tap.
-    pub tapped: bool,
-    /// Tasks that read what comes back; each holds its link open.
-    pub ears: Vec<tokio::task::JoinHandle<()>>,
-    absence: Duration,
-    /// The link whose reader has left for good.
-    pub left: Option<usize>,
-    pub lookout: Lookout,
+struct Control {
+    job: Job,
+    shared: Arc<Shared>,
+    clock: WallClock,
+    outputs: Vec<OpenOutput>,
+    talk: Rc<RefCell<Talk>>,
+    ears: Ears,
     hold: Hold,
+    /// Where nothing moves without a reader and nothing else ends the run.
+    absence: Option<Absence>,
     /// Why it ended before the scene began.
-    pub failed: Option<SessionError>,
+    failed: Option<SessionError>,
 }
 
-/// Since when no packet has moved because a reader is gone.
-struct Absence {
-    packets: u64,
-    since: Instant,
-}
-
-impl Absence {
-    /// The link whose reader has been gone for `limit`.
-    fn look(&mut self, packets: u64, links: &[Link], limit: Duration) -> Option<usize> {
-        let still = packets == self.packets;
-        let left = still.then(|| links.iter().position(Link::peer_has_left)).flatten();
-        if left.is_none() {
-            *self = Absence { packets, since: Instant::now() };
-        }
-        left.filter(|_| self.since.elapsed() >= limit)
-    }
-}
-
-/// The command, if there is one; without one, its end never comes.
-pub(super) struct Program(pub Option<Child>);
-
-impl Program {
-    pub(super) async fn ended(&mut self) -> i32 {
-        match &mut self.0 {
-            Some(child) => child.wait().await.map_or(1, command::code),
-            None => std::future::pending().await,
-        }
-    }
-}
-
-impl Run {
-    fn new(job: Job, absence: Duration, senders: Vec<Sender>) -> Run {
-        let shared = Arc::new(Shared::before(job.rest));
-        let lockstep = job.outputs.iter().any(lockstep::in_lockstep);
-        let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
-        let talk = Talk::new(&job.outputs, senders, heard);
-        let lookout = Lookout::new(job.outputs.len());
-        let clock = job.watch.as_ref().map_or_else(WallClock::start, |watch| watch.clock);
-        let hold = Hold::new(job.rest);
-        Run {
-            job,
-            lookout,
-            shared,
-            clock,
-            talk: Rc::new(RefCell::new(talk)),
-            interrupted: false,
-            ended: None,
-            tapped: false,
-            ears: Vec::new(),
-            absence,
-            left: None,
-            hold,
-            failed: None,
-        }
-    }
-
+impl Control {
     async fn go(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
-        let signals = Interrupt::listen();
-        let mut signals =
-            signals.map_err(|source| SessionError::System { doing: "listen for Ctrl-C", source })?;
-        let mut links = Vec::new();
-        for output in &job.outputs {
-            links.push(Link::open(&output.to.address).await?);
-        }
-        let senders = links.iter_mut().map(Link::sender).collect();
-        let mut run = Run::new(job, absence, senders);
-        run.open_ground(on).await?;
-        for (link, output) in links.iter().zip(&run.job.outputs) {
-            link.notices().iter().for_each(|notice| on(Event::Notice(notice.clone())));
-            on(Event::Ready(&output.to.at(link.name())));
-        }
-        let names: Vec<String> = links.iter().map(|link| link.name().to_string()).collect();
+        let mut outside = Outside::new(on)?;
+        let mut control = Control::open(job, absence).await?;
+        control.open_ground(&mut outside).await?;
+        control.outputs.iter().for_each(|output| output.introduce(&mut outside));
         let (ring, consumer) = rtrb::RingBuffer::new(RING);
-        let mut ring = Some(ring);
+        let mut producing = Producing::NotYet(ring);
         // What does not depend on what the other side says is made while it is waited for.
-        let mut producer = None;
-        if run.talk.borrow().silent().is_none() {
-            producer = ring.take().map(|ring| run.start_producer(ring));
+        if control.talk.borrow().silent().is_none() {
+            producing = control.start(producing);
         }
-        let mut program = Program(None);
-        if !run.job.command.is_empty() {
-            program.0 = Some(command::start(&run.job.command, &names[0], run.job.keep_stdout)?);
-        }
-        let mut here = run.wait_for_peers(on, &mut links, &mut signals, &mut program).await;
-        if matches!(here, Ok(true)) {
-            run.listen(&mut links);
-            here = run.wait_to_be_heard(on, &names, &mut signals, &mut program).await;
-        }
+        let Job { command, keep_stdout, .. } = &control.job;
+        outside.program = Program::start(command, control.outputs[0].name(), *keep_stdout)?;
+        let here = control.wait(&mut outside).await;
         if !matches!(here, Ok(true)) {
-            run.shared.stop.store(true, Ordering::Relaxed);
+            control.shared.stop.store(true, Ordering::Relaxed);
             drop(consumer);
-            producer.map(JoinHandle::join);
+            producing.abandon();
             here?;
-            return Ok(run.never_started(names));
+            return Ok(control.never_started(&outside));
         }
-        run.compare_rates(on);
-        let producer = match (producer, ring) {
-            (None, Some(ring)) => run.start_producer(ring),
-            (producer, _) => producer.unwrap_or_else(|| unreachable!("the ring went to a producer")),
-        };
-        on(if run.job.rest.is_some() { Event::Still } else { Event::Started });
-        let pacer = run.pacer(consumer);
-        let (pacing, mut notices, mut done) = run.start_pacer(pacer)?;
-        run.talk.borrow_mut().pacing = Some(pacing.thread().clone());
-        run.attend(on, &links, &names, &mut signals, &mut program, &mut notices, &mut done).await;
-        let (mut pacer, granted) = pacing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        let made = run.collect(producer, &mut pacer);
-        run.finish(Ended { pacer, links, program, names, granted, made }).await
+        control.compare_rates(&mut outside);
+        let producing = control.start(producing);
+        outside.tell(if control.job.rest.is_some() { Event::Still } else { Event::Started });
+        let pacer = control.pacer(consumer);
+        let mut pacing = Pacing::start(pacer, control.job.cpu)?;
+        control.talk.borrow_mut().pacing = Some(pacing.thread());
+        control.attend(&mut pacing, &mut outside).await;
+        let (mut pacer, granted) = pacing.join();
+        let feeds = producing.collect(&mut pacer);
+        control.finish(outside, pacer, granted, feeds).await
+    }
+
+    /// Opens every link.
+    async fn open(job: Job, absence: Duration) -> Result<Control, SessionError> {
+        let mut outputs = Vec::new();
+        for output in &job.outputs {
+            outputs.push(OpenOutput::open(output).await?);
+        }
+        let sides = outputs.iter_mut().map(|it| Side::new(&it.output, it.link.sender())).collect();
+        let shared = Arc::new(Shared::before(job.rest));
+        let lockstep = job.outputs.iter().any(step::in_lockstep);
+        let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
+        // Paced, a packet that nobody reads is dropped and counted; and a command ends the run by ending.
+        let waits = !job.speed.is_paced() && job.command.is_empty();
+        Ok(Control {
+            shared,
+            clock: job.watch.as_ref().map_or_else(WallClock::start, |watch| watch.clock),
+            outputs,
+            talk: Rc::new(RefCell::new(Talk::new(sides, heard))),
+            ears: Ears::default(),
+            hold: Hold::new(job.rest),
+            absence: waits.then(|| Absence::new(absence)),
+            failed: None,
+            job,
+        })
     }
 
     /// Opens the way to a ground station, and listens to it.
-    async fn open_ground(&mut self, on: &mut dyn FnMut(Event<'_>)) -> Result<(), SessionError> {
+    async fn open_ground(&mut self, outside: &mut Outside<'_>) -> Result<(), SessionError> {
         let Some((address, output)) = &self.job.ground else { return Ok(()) };
         let mut link = Link::open(address).await?;
         self.talk.borrow_mut().bridge(link.sender(), *output);
-        on(Event::Ground(link.name()));
+        outside.tell(Event::Ground(link.name()));
         if let Some(receiver) = link.receiver() {
-            let ear = ears::listen_to_ground(receiver, self.talk.clone());
-            self.ears.push(tokio::task::spawn_local(ear));
+            self.ears.listen_to_ground(receiver, &self.talk);
         }
         Ok(())
     }
 
-    fn start_producer(&self, ring: rtrb::Producer<Item>) -> JoinHandle<(Made, Encoders)> {
-        let (plan, outputs, shared) = (self.job.plan.clone(), self.job.outputs.clone(), self.shared.clone());
-        let (end, rest, peers) = (self.job.end, self.job.rest, self.talk.borrow().peers());
-        thread::spawn(move || {
-            let task = Task { plan: &plan, outputs: &outputs, peers: &peers, end, rest };
-            producer::produce(task, ring, &shared)
-        })
+    /// Starts the producer thread if it is not started yet.
+    fn start(&self, producing: Producing) -> Producing {
+        let talk = self.talk.borrow();
+        producing.start(&self.job, &self.shared, talk.sides.iter().map(Side::peer))
     }
 
-    fn listen(&mut self, links: &mut [Link]) {
-        for (i, link) in links.iter_mut().enumerate() {
-            let Some(receiver) = link.receiver() else { continue };
-            if let Some(tap) = self.job.tap.take_if(|_| i == 0) {
-                self.ears.push(tokio::task::spawn_local(ears::tapped(receiver, tap)));
-                self.tapped = true;
-                continue;
+    /// True when somebody is on every link and every other side may be sent samples; false when the user or the command
+    /// ended the wait.
+    async fn wait(&mut self, outside: &mut Outside<'_>) -> Result<bool, SessionError> {
+        let waited = self.job.wait;
+        let deadline = Instant::now() + waited;
+        for output in self.outputs.iter_mut().filter(|_| !waited.is_zero()) {
+            if !output.wait_for_reader(waited, deadline, outside).await? {
+                return Ok(false);
             }
-            let ear = ears::listen(i, receiver, self.talk.clone(), self.clock);
-            self.ears.push(tokio::task::spawn_local(ear));
+        }
+        self.listen();
+        self.wait_to_be_heard(outside).await
+    }
+
+    fn listen(&mut self) {
+        for (i, output) in self.outputs.iter_mut().enumerate() {
+            let Some(receiver) = output.link.receiver() else { continue };
+            match self.job.tap.take_if(|_| i == 0) {
+                Some(tap) => self.ears.tap(receiver, tap),
+                None => self.ears.listen(i, receiver, &self.talk, self.clock),
+            }
+        }
+    }
+
+    /// True when every other side may be sent samples; false when the user or the command ended the wait.
+    async fn wait_to_be_heard(&mut self, outside: &mut Outside<'_>) -> Result<bool, SessionError> {
+        let waited = self.job.wait;
+        let deadline = Instant::now() + waited;
+        let mut ticks = interval(TICK);
+        let mut told = false;
+        loop {
+            self.tick(outside);
+            let Some(silent) = self.talk.borrow().silent().filter(|_| !waited.is_zero()) else {
+                return Ok(true);
+            };
+            let name = self.outputs[silent].name();
+            if Instant::now() >= deadline {
+                let came = self.talk.borrow().sides[silent].what_came();
+                return Err(SessionError::Unheard { link: name.to_string(), waited, came });
+            }
+            if !std::mem::replace(&mut told, true) {
+                outside.tell(Event::Silent(name));
+            }
+            tokio::select! {
+                _ = ticks.tick() => {}
+                () = outside.ends() => return Ok(false),
+            }
+        }
+    }
+
+    /// Tells of a controller that asks for more than the scene has.
+    fn compare_rates(&self, outside: &mut Outside<'_>) {
+        let sensors = self.job.plan.sensors.iter();
+        let Some(fastest) = sensors.max_by(|a, b| a.rate.as_hz().total_cmp(&b.rate.as_hz())) else { return };
+        let talk = self.talk.borrow();
+        let asked = talk.sides.iter().filter_map(|side| side.peer().rate);
+        for rate in asked.filter(|rate| rate.as_hz() > fastest.rate.as_hz()) {
+            outside.notice(format!(
+                "the controller asks for {rate}, and the scene's fastest sensor, {}, has {}: --set {}.rate='{rate}' gives it all",
+                fastest.kind, fastest.rate, fastest.kind
+            ));
         }
     }
 
     /// The pacing thread's work, with the links.
-    fn pacer(&mut self, consumer: rtrb::Consumer<Item>) -> Pacer<Precise<WallClock>> {
+    fn pacer(&mut self, ring: rtrb::Consumer<Item>) -> LivePacer {
+        let mut pace =
+            Pace::new(Precise::new(self.clock, Policy::Adaptive), self.job.speed, self.shared.clone());
+        pace.watching = self.job.watch.take().map(Watching::new);
         let mut talk = self.talk.borrow_mut();
-        let outputs = &self.job.outputs;
-        let (senders, replies) = (0..outputs.len()).map(|link| talk.hand_over(link)).unzip();
-        let policies = outputs.iter().map(|output| output.overload);
-        let clock = Precise::new(self.clock, Policy::Adaptive);
-        let mut pacer = Pacer::new(clock, consumer, senders, policies, self.job.speed);
-        pacer.watching = self.job.watch.take().map(Watching::new);
-        pacer.replies = replies;
-        let step = |(link, output)| lockstep::in_lockstep(output).then(|| Step::new(talk.took(link)));
-        pacer.steps = outputs.iter().enumerate().map(step).collect();
-        pacer
+        let lanes = self.outputs.iter().enumerate().map(|(i, it)| talk.lane(i, &it.output)).collect();
+        Pacer { pace, ring, lanes }
     }
 
-    /// Starts the pacing thread; the channels bring a notice about what it was not allowed, and its end.
-    fn start_pacer(&self, mut pacer: Pacer<Precise<WallClock>>) -> Result<Paced, SessionError> {
-        let (shared, paced, cpu) = (self.shared.clone(), self.job.speed != Speed::Max, self.job.cpu);
-        let (tell, notices) = oneshot::channel();
-        let (over, done) = oneshot::channel();
-        let body = move || {
-            let granted = if paced { Granted::ask(cpu) } else { Granted::default() };
-            let _ = tell.send(granted.refused.clone());
-            pacer.run(pacer.clock.now() + LEAD, &shared);
-            let _ = over.send(());
-            (pacer, granted)
-        };
-        let thread = thread::Builder::new().name("pacing".into()).spawn(body);
-        let thread =
-            thread.map_err(|source| SessionError::System { doing: "start the pacing thread", source })?;
-        Ok((thread, notices, done))
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "one for each that may end it")]
     /// Reports progress until the pacing thread has ended, or the user, the command or a reader that is gone ends it.
-    async fn attend(
-        &mut self,
-        on: &mut dyn FnMut(Event<'_>),
-        links: &[Link],
-        names: &[String],
-        signals: &mut Interrupt,
-        program: &mut Program,
-        notices: &mut oneshot::Receiver<Option<String>>,
-        done: &mut oneshot::Receiver<()>,
-    ) {
-        if let Ok(Some(notice)) = notices.await {
-            on(Event::Notice(notice));
+    async fn attend(&mut self, pacing: &mut Pacing, outside: &mut Outside<'_>) {
+        if let Some(refused) = pacing.refused().await {
+            outside.notice(refused);
         }
-        let mut ticks = tokio::time::interval(PROGRESS);
-        let mut looks = tokio::time::interval(LOOK);
-        let mut beats = tokio::time::interval(TICK);
-        // Paced, a packet that nobody reads is dropped and counted; and a command ends the run by ending.
-        let waits = self.job.speed == Speed::Max && self.job.command.is_empty();
-        let mut absence = Absence { packets: 0, since: Instant::now() };
+        let (mut beats, mut looks, mut ticks) = (interval(TICK), interval(LOOK), interval(PROGRESS));
         loop {
             tokio::select! {
-                _ = &mut *done => break,
+                () = pacing.over() => break,
                 _ = beats.tick() => {
-                    self.tick(on);
-                    self.look_on(on, names);
+                    self.tick(outside);
+                    self.look_on(outside);
                 }
-                _ = looks.tick() => self.lookout.look(links, |notice| on(Event::Notice(notice))),
+                _ = looks.tick() => self.outputs.iter_mut().for_each(|output| output.look(outside)),
                 _ = ticks.tick() => {
                     let progress = self.progress();
-                    if waits && let Some(link) = absence.look(progress.packets, links, self.absence) {
-                        self.left = Some(link);
+                    if let Some(absence) = &mut self.absence
+                        && absence.look(progress.packets, &mut self.outputs)
+                    {
                         self.shared.stop.store(true, Ordering::Relaxed);
                     }
-                    on(Event::Progress(progress));
+                    outside.tell(Event::Progress(progress));
                 }
-                () = signals.recv(), if !self.interrupted => {
-                    self.interrupted = true;
-                    self.shared.stop.store(true, Ordering::Relaxed);
-                }
-                code = program.ended(), if self.ended.is_none() => {
-                    self.ended = Some(code);
-                    self.shared.stop.store(true, Ordering::Relaxed);
-                }
+                () = outside.ends() => self.shared.stop.store(true, Ordering::Relaxed),
             }
         }
-        self.lookout.look(links, |notice| on(Event::Notice(notice)));
-        on(Event::Progress(self.progress()));
+        self.outputs.iter_mut().for_each(|output| output.look(outside));
+        outside.tell(Event::Progress(self.progress()));
     }
 
     fn progress(&self) -> Progress {
-        let stream = SimTime(self.shared.stream_ns.load(Ordering::Relaxed));
+        let stream = self.shared.sent();
         let scene = self.shared.scene_time(stream);
         Progress {
             t: scene.unwrap_or(stream),
@@ -313,14 +267,21 @@ impl Run {
         }
     }
 
+    /// What is due by itself in the conversations, and what the other sides gave notice of.
+    fn tick(&self, outside: &mut Outside<'_>) {
+        self.talk.borrow_mut().tick(self.clock.now());
+        let notices = self.talk.borrow_mut().take_notices();
+        notices.into_iter().for_each(|notice| outside.notice(notice));
+    }
+
     /// Whether the scene may begin, has begun, or is not waited for any more.
-    fn look_on(&mut self, on: &mut dyn FnMut(Event<'_>), names: &[String]) {
+    fn look_on(&mut self, outside: &mut Outside<'_>) {
         let unready = {
             let talk = self.talk.borrow();
-            talk.unready().map(|link| (names[link].clone(), talk.what_came(link)))
+            talk.unready().map(|i| (self.outputs[i].name().to_string(), talk.sides[i].what_came()))
         };
         match self.hold.look(&self.shared, unready, self.job.wait) {
-            Ok(true) => on(Event::Started),
+            Ok(true) => outside.tell(Event::Started),
             Ok(false) => {}
             Err(error) => {
                 self.failed.get_or_insert(error);
@@ -328,36 +289,104 @@ impl Run {
             }
         }
         if let Some(notice) = self.hold.untaken(&self.shared) {
-            on(Event::Notice(notice));
+            outside.notice(notice);
         }
+    }
+
+    /// Lets the other side take what was sent, closes everything, and adds up.
+    async fn finish(
+        mut self,
+        outside: Outside<'_>,
+        pacer: LivePacer,
+        granted: Granted,
+        mut feeds: Vec<Feed>,
+    ) -> Result<Outcome, SessionError> {
+        let Pacer { pace, mut lanes, .. } = pacer;
+        self.take_leave(&mut lanes, &mut feeds).await;
+        let (played, now) = (self.played(&lanes, &outside), self.clock.now());
+        let accounts = lanes.into_iter().zip(feeds).map(|(lane, feed)| {
+            let mut made = feed.made();
+            made.settle(played + self.shared.rest());
+            lane.account(made, now)
+        });
+        let accounts: Vec<_> = accounts.collect();
+        if self.ears.tapped || self.talk.borrow().has_estimates() {
+            sleep(LAST_ANSWERS).await;
+        }
+        self.ears.close().await;
+        let mut outcome = self.outcome(&accounts);
+        for output in self.outputs {
+            output.link.close().await;
+        }
+        outcome.interrupted = outside.interrupted;
+        outcome.command = outside.finish().await;
+        if let Some(error) = self.failed {
+            return Err(error);
+        }
+        let judgement = self.talk.borrow().judge(self.job.judging, played);
+        Ok(Outcome {
+            played,
+            rest_s: self.shared.rest().seconds(),
+            stretched_s: pace.stretched as f64 * 1e-9,
+            realtime: granted.priority,
+            memory_locked: granted.memory,
+            pacing: pace.report(granted.cpu),
+            watched: pace.watching.map(|watching| watching.seen),
+            attitude: judgement.figures,
+            estimates: judgement.estimates,
+            ..outcome
+        })
+    }
+
+    /// Leaves every other side with a vehicle that has stopped, and with all that was sent.
+    async fn take_leave(&self, lanes: &mut [Lane], feeds: &mut [Feed]) {
+        let t = self.shared.sent() + SimTime(1);
+        let deadline = Instant::now() + FAREWELL;
+        for (lane, feed) in lanes.iter_mut().zip(feeds) {
+            lane.take_leave(feed.farewell(t), deadline).await;
+        }
+        lanes.iter_mut().for_each(Lane::finish);
+    }
+
+    /// The end if all was played, else where the last packet was due.
+    fn played(&self, lanes: &[Lane], outside: &Outside<'_>) -> SimTime {
+        let stopped = outside.has_ended() || self.outputs.iter().any(|output| output.abandoned);
+        let cut_short = stopped || !lanes.iter().any(Lane::is_open);
+        // An end is exclusive: a nanosecond on, so that the last packet is within.
+        let last = self.shared.scene_time(self.shared.sent()).map_or(SimTime::ZERO, |t| t + SimTime(1));
+        if cut_short { last.min(self.job.end) } else { self.job.end }
+    }
+
+    /// What came of the outputs.
+    fn outcome(&self, accounts: &[Account]) -> Outcome {
+        let (plan, paced) = (&self.job.plan, self.job.speed.is_paced());
+        let talk = self.talk.borrow();
+        let outputs = || self.outputs.iter().zip(accounts);
+        let links = outputs().zip(&talk.sides);
+        Outcome {
+            speed: self.job.speed,
+            sensors: plan.sensors.iter().map(|it| Account::sensor(accounts, it, paced)).collect(),
+            links: links.map(|((output, account), side)| output.report(account, side)).collect(),
+            faults: outputs().flat_map(|(it, account)| account.made.fired(&it.output)).collect(),
+            ..Outcome::default()
+        }
+    }
+
+    fn never_started(&self, outside: &Outside<'_>) -> Outcome {
+        let accounts: Vec<_> = self.outputs.iter().map(|_| Account::default()).collect();
+        Outcome { interrupted: outside.interrupted, command: outside.ended, ..self.outcome(&accounts) }
     }
 }
 
-/// What is left when both threads have ended.
-pub(super) struct Ended {
-    pub pacer: Pacer<Precise<WallClock>>,
-    pub links: Vec<Link>,
-    pub program: Program,
-    pub names: Vec<String>,
-    pub granted: Granted,
-    /// What was made, what of it is left, and who can take leave.
-    pub made: super::finish::Collected,
-}
-
-type Paced = (
-    JoinHandle<(Pacer<Precise<WallClock>>, Granted)>,
-    oneshot::Receiver<Option<String>>,
-    oneshot::Receiver<()>,
-);
-
 #[cfg(test)]
 mod tests {
-    use super::super::Judging;
+    use super::super::Speed;
     use super::*;
     use crate::scene::{Output, Plan};
     use std::fs::OpenOptions;
     use std::io::Read;
     use std::os::unix::fs::OpenOptionsExt;
+    use std::thread;
 
     #[test]
     fn at_full_speed_a_reader_that_leaves_for_good_ends_the_run() {
@@ -365,21 +394,8 @@ mod tests {
         let plan = Arc::new(Plan::parse(scene, "test", "test", &[]).unwrap());
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("imu");
-        let job = Job {
-            end: plan.duration,
-            plan,
-            outputs: vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())],
-            rest: None,
-            ground: None,
-            speed: Speed::Max,
-            wait: Duration::from_secs(60),
-            command: Vec::new(),
-            keep_stdout: false,
-            judging: Judging::default(),
-            cpu: None,
-            watch: None,
-            tap: None,
-        };
+        let outputs = vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())];
+        let job = Job { speed: Speed::Max, wait: Duration::from_secs(60), ..Job::new(plan, outputs) };
         let read_a_while = move || {
             // Away for less than is allowed, it may come back.
             for _ in 0..2 {

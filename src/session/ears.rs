@@ -7,9 +7,53 @@ use crate::link::Receiver;
 use bytes::BytesMut;
 use std::cell::RefCell;
 use std::rc::Rc;
+use tokio::task::{JoinHandle, spawn_local};
+
+/// All of them.
+#[derive(Default)]
+pub(super) struct Ears {
+    tasks: Vec<JoinHandle<()>>,
+    /// Whether one hears for a tap.
+    pub tapped: bool,
+}
+
+impl Ears {
+    /// Hands on what a link receives to a tap.
+    pub(super) fn tap(&mut self, receiver: Receiver, tap: Tap) {
+        self.tasks.push(spawn_local(tapped(receiver, tap)));
+        self.tapped = true;
+    }
+
+    /// Listens to the other side of a link.
+    pub(super) fn listen(
+        &mut self,
+        link: usize,
+        receiver: Receiver,
+        talk: &Rc<RefCell<Talk>>,
+        clock: WallClock,
+    ) {
+        self.tasks.push(spawn_local(listen(link, receiver, talk.clone(), clock)));
+    }
+
+    /// Listens to a ground station.
+    pub(super) fn listen_to_ground(&mut self, receiver: Receiver, talk: &Rc<RefCell<Talk>>) {
+        self.tasks.push(spawn_local(listen_to_ground(receiver, talk.clone())));
+    }
+
+    /// Listens no more.
+    pub(super) async fn close(&mut self) {
+        for task in &self.tasks {
+            task.abort();
+        }
+        for task in self.tasks.drain(..) {
+            // Only when its task is gone does a link's descriptor close, and the other side see the end.
+            let _ = task.await;
+        }
+    }
+}
 
 /// Hands on what one link receives until the other side leaves.
-pub(super) async fn tapped(mut receiver: Receiver, mut tap: Tap) {
+async fn tapped(mut receiver: Receiver, mut tap: Tap) {
     let mut buffer = BytesMut::with_capacity(4096);
     while matches!(receiver.recv(&mut buffer).await, Ok(1..)) {
         tap.0(&buffer);
@@ -19,7 +63,7 @@ pub(super) async fn tapped(mut receiver: Receiver, mut tap: Tap) {
 
 /// Reads one link until the other side leaves; what has no meaning here is read all the same, so that nothing stands
 /// in the other side's way.
-pub(super) async fn listen(link: usize, mut receiver: Receiver, talk: Rc<RefCell<Talk>>, clock: WallClock) {
+async fn listen(link: usize, mut receiver: Receiver, talk: Rc<RefCell<Talk>>, clock: WallClock) {
     let mut buffer = BytesMut::with_capacity(4096);
     while matches!(receiver.recv(&mut buffer).await, Ok(1..)) {
         talk.borrow_mut().hear(link, &buffer, clock.now());
@@ -28,7 +72,7 @@ pub(super) async fn listen(link: usize, mut receiver: Receiver, talk: Rc<RefCell
 }
 
 /// Reads what a ground station sends, a datagram at a time. One that is not there yet may come.
-pub(super) async fn listen_to_ground(mut receiver: Receiver, talk: Rc<RefCell<Talk>>) {
+async fn listen_to_ground(mut receiver: Receiver, talk: Rc<RefCell<Talk>>) {
     let mut buffer = BytesMut::with_capacity(4096);
     loop {
         buffer.clear();

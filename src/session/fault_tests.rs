@@ -1,15 +1,15 @@
 //! Faults of outputs: what was injected is what a receiver counts, and the account stays whole.
 
-use super::pacer::Pacer;
-use super::producer::Made;
-use super::tests::{accounts_balance, memory, plan, produce};
+use super::feed::Made;
+use super::tests::{accounts_balance, memory, pacer, plan, produce};
 use super::*;
 use crate::clock::{Clock, VirtualClock};
 use crate::link::Far;
-use crate::scene::Overload;
+use crate::time::SimTime;
 use crate::wire::Protocol;
 use crate::wire::samples::{Counts, Samples};
-use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 
 const MS: i64 = 1_000_000;
 /// 1 kHz gyro and accel, 100 Hz mag, for a second, to one output.
@@ -67,7 +67,7 @@ impl Ran {
 
     /// Packets that the only fault acted on.
     fn acted(&self) -> u64 {
-        self.made.faults[0][0].packets
+        self.made.faults[0].packets
     }
 
     fn received(&self, protocol: Protocol) -> (Counts, [u64; 3]) {
@@ -79,20 +79,20 @@ impl Ran {
 }
 
 fn run(scene: &str, speed: Speed) -> Ran {
-    let (plan, shared) = (plan(scene), Shared::default());
+    let (plan, shared) = (plan(scene), Arc::<Shared>::default());
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-    let mut made = produce(&plan, &plan.outputs[..1], ring, &shared);
-    made.faults.iter_mut().flatten().for_each(|acts| acts.settle(plan.duration));
+    let mut made = produce(&plan, &plan.outputs[..1], ring, &shared).remove(0);
+    made.settle(plan.duration);
     let (sender, far) = memory(1 << 20);
     let seen = Arc::default();
     let clock = Noting { now: 0, far, seen: Arc::clone(&seen), stop: None };
-    let mut pacer = Pacer::new(clock, consumer, vec![sender], [Overload::DropNewest], speed);
-    pacer.run(0, &shared);
+    let mut pacer = pacer(clock, consumer, sender, speed, &shared);
+    pacer.run(0);
     accounts_balance(&made, &mut pacer);
-    assert_eq!(pacer.tallies[0].dropped, 0, "a fault is no loss of ours");
-    let _ = pacer.senders[0].finish();
-    pacer.clock.sleep_until(i64::MAX);
-    let sent = pacer.tallies[0].packets;
+    assert_eq!(pacer.lanes[0].tally.dropped, 0, "a fault is no loss of ours");
+    let _ = pacer.lanes[0].sender.finish();
+    pacer.pace.clock.sleep_until(i64::MAX);
+    let sent = pacer.lanes[0].tally.packets;
     drop(pacer);
     Ran { made, sent, seen: Arc::into_inner(seen).unwrap().into_inner().unwrap() }
 }
@@ -113,7 +113,7 @@ fn a_receiver_counts_exactly_what_was_injected() {
         let clean = play(name, "");
         let (none, all) = clean.received(protocol);
         assert_eq!((none.lost, none.damaged, none.duplicates, none.out_of_order), (0, 0, 0, 0), "control");
-        assert_eq!((all, &clean.made.samples[0][..3]), ([1000, 1000, 100], &[1000, 1000, 100][..]));
+        assert_eq!((all, &clean.made.samples[..3]), ([1000, 1000, 100], &[1000, 1000, 100][..]));
         // In 500 ms: mpu has imu and mag packets, mavlink one for both.
         let n = if name == "mpu" { 550.0 } else { 500.0 };
         for (kind, p) in [("drop", 0.2), ("corrupt", 0.2), ("duplicate", 0.2), ("reorder", 0.2 / 1.2)] {
@@ -128,12 +128,12 @@ fn a_receiver_counts_exactly_what_was_injected() {
             assert_eq!(ran.sent, clean.sent - of("drop") + of("duplicate"), "{name} {kind}");
             assert_eq!(counts.packets + of("corrupt"), ran.sent, "{name} {kind}");
             // Samples come as often as the account says, but for those in hurt packets.
-            let (made, came): (u64, u64) = (ran.made.samples[0].iter().sum(), samples.iter().sum());
+            let (made, came): (u64, u64) = (ran.made.samples.iter().sum(), samples.iter().sum());
             assert!(
                 if kind == "corrupt" { came < made } else { came == made },
                 "{name} {kind}: {came} {made}"
             );
-            let whole = clean.made.samples[0].iter().sum::<u64>();
+            let whole = clean.made.samples.iter().sum::<u64>();
             assert_eq!(made.cmp(&whole), (of("duplicate")).cmp(&of("drop")), "{name} {kind}");
         }
         for kind in ["stall", "split"] {
@@ -214,18 +214,18 @@ fn faults_give_the_same_bytes_at_any_speed_as_resolved_and_beside_others() {
 #[test]
 fn what_was_done_ahead_of_time_is_not_told() {
     let scene = scene("mpu", &fault("drop", "share = \"100 %\""));
-    let (plan, shared) = (plan(&scene), Shared::default());
+    let (plan, shared) = (plan(&scene), Arc::<Shared>::default());
     let (ring, _consumer) = rtrb::RingBuffer::new(1 << 16);
-    let mut made = produce(&plan, &plan.outputs, ring, &shared);
-    let fired = |made: &Made| links::fired(&plan.outputs, made);
+    let mut made = produce(&plan, &plan.outputs, ring, &shared).remove(0);
+    let fired = |made: &Made| made.fired(&plan.outputs[0]);
     assert_eq!(fired(&made), [""; 0], "nothing has gone out yet");
-    made.faults[0][0].settle(SimTime(300 * MS));
+    made.faults[0].settle(SimTime(300 * MS));
     assert_eq!(
-        (made.faults[0][0].packets, fired(&made)),
+        (made.faults[0].packets, fired(&made)),
         (110, vec!["mpu@pty drop from 0.2 s to 0.7 s".into()])
     );
-    made.faults[0][0].settle(plan.duration);
-    assert_eq!((made.faults[0][0].packets, &made.samples[0][..3]), (550, &[500, 500, 50][..]));
+    made.faults[0].settle(plan.duration);
+    assert_eq!((made.faults[0].packets, &made.samples[..3]), (550, &[500, 500, 50][..]));
 }
 
 #[test]
@@ -234,13 +234,13 @@ fn the_account_is_whole_wherever_a_run_with_faults_is_stopped() {
     let every = kinds.map(|kind| fault(kind, "share = \"30 %\"")).concat();
     let plan = plan(&scene("mavlink", &(every + &fault("stall", "") + &fault("split", ""))));
     for stop in [0, 150, 205, 400, 699, 701, 950].map(|ms| ms * MS) {
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::<Shared>::default();
         let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-        let made = produce(&plan, &plan.outputs, ring, &shared);
+        let made = produce(&plan, &plan.outputs, ring, &shared).remove(0);
         let (sender, far) = memory(1 << 20);
         let clock = Noting { now: 0, far, seen: Arc::default(), stop: Some((stop, shared.clone())) };
-        let mut pacer = Pacer::new(clock, consumer, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
-        pacer.run(0, &shared);
+        let mut pacer = pacer(clock, consumer, sender, Speed::Times(1.0), &shared);
+        pacer.run(0);
         let played = shared.stream_ns.load(Ordering::Relaxed);
         assert!(
             (stop..stop + 60 * MS).contains(&played),
@@ -254,18 +254,12 @@ fn the_account_is_whole_wherever_a_run_with_faults_is_stopped() {
 fn the_pacing_thread_allocates_nothing_with_faults_either() {
     let every =
         ["drop", "corrupt", "duplicate", "reorder", "stall", "split"].map(|kind| fault(kind, "")).concat();
-    let (plan, shared) = (plan(&scene("mpu", &every)), Shared::default());
+    let (plan, shared) = (plan(&scene("mpu", &every)), Arc::<Shared>::default());
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
     produce(&plan, &plan.outputs, ring, &shared);
     let (sender, _far) = memory(1 << 20);
-    let mut pacer = Pacer::new(
-        VirtualClock::default(),
-        consumer,
-        vec![sender],
-        [Overload::DropNewest],
-        Speed::Times(1.0),
-    );
-    let counted = allocation_counter::measure(|| pacer.run(0, &shared));
-    assert!(pacer.tallies[0].packets > 1000);
+    let mut pacer = pacer(VirtualClock::default(), consumer, sender, Speed::Times(1.0), &shared);
+    let counted = allocation_counter::measure(|| pacer.run(0));
+    assert!(pacer.lanes[0].tally.packets > 1000);
     assert_eq!(counted.count_total, 0);
 }

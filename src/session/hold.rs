@@ -1,6 +1,6 @@
 //! While the vehicle is held still: whether the scene may begin, and for how long that is waited for.
 
-use super::{SessionError, Shared, lockstep};
+use super::{SessionError, Shared, step};
 use crate::time::SimTime;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -37,7 +37,7 @@ impl Hold {
             return Ok(false);
         }
         shared.ready.store(unready.is_none() || wait.is_zero(), Ordering::Relaxed);
-        let t = SimTime(shared.stream_ns.load(Ordering::Relaxed));
+        let t = shared.sent();
         if shared.scene_time(t).is_some() {
             self.began = true;
             return Ok(true);
@@ -57,7 +57,7 @@ impl Hold {
     /// What the user should know of answers in lockstep that did not come.
     pub(super) fn untaken(&mut self, shared: &Shared) -> Option<String> {
         let untaken = shared.untaken.load(Ordering::Relaxed);
-        let patience = SimTime(lockstep::PATIENCE);
+        let patience = SimTime(step::PATIENCE);
         (std::mem::replace(&mut self.untaken, untaken) < untaken).then(|| {
             format!("no answer to a packet of samples for {patience}: the stream goes on in real time until the next one")
         })

@@ -1,15 +1,18 @@
 //! Links that are too slow, on a virtual clock: what each policy loses, keeps and delays, to the packet.
 
-use super::overload::BACKLOG;
-use super::pacer::{Left, Pacer};
-use super::producer::Made;
+use super::account::Account;
+use super::lane::Lane;
+use super::pace::Pace;
+use super::pacer::Pacer;
+use super::queue::BACKLOG;
 use super::tests::{memory, plan, produce};
 use super::*;
 use crate::clock::Clock;
-use crate::link::{Far, Sender};
-use crate::scene::Overload;
+use crate::link::Far;
+use crate::scene::{Output, Overload};
 use proptest::prelude::*;
-use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 
 const MS: i64 = 1_000_000;
 const POLICIES: [Overload; 3] = [Overload::DropNewest, Overload::DropOldest, Overload::Stretch];
@@ -59,9 +62,7 @@ impl<F: FnMut(i64, &mut [Reader]) + Send> Clock for World<F> {
 
 /// A run that is over.
 struct Ran {
-    made: Made,
-    left: Left,
-    tallies: Vec<tally::LinkTally>,
+    accounts: Vec<Account>,
     readers: Vec<Reader>,
     end: i64,
     stretched: i64,
@@ -74,64 +75,64 @@ fn run(
     capacity: usize,
     act: impl FnMut(i64, &mut [Reader]) + Send,
 ) -> Ran {
-    run_until(scene, policies, capacity, &Shared::default(), act)
+    run_until(scene, policies, capacity, &Arc::<Shared>::default(), act)
 }
 
 fn run_until(
     scene: &str,
     policies: &[Overload],
     capacity: usize,
-    shared: &Shared,
+    shared: &Arc<Shared>,
     act: impl FnMut(i64, &mut [Reader]) + Send,
 ) -> Ran {
     let plan = plan(scene);
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
     let outputs: Vec<_> = policies.iter().map(|_| Output::to("jsonl@pty".parse().unwrap())).collect();
     let made = produce(&plan, &outputs, ring, shared);
-    let (senders, readers): (Vec<Sender>, Vec<Reader>) = policies
+    let (lanes, readers): (Vec<Lane>, Vec<Reader>) = policies
         .iter()
-        .map(|_| memory(capacity))
-        .map(|(sender, far)| (sender, Reader { far, received: Vec::new() }))
+        .map(|policy| (memory(capacity), *policy))
+        .map(|((sender, far), policy)| (Lane::new(sender, policy), Reader { far, received: Vec::new() }))
         .unzip();
     let readers = Arc::new(Mutex::new(readers));
     let world = World { now: 0, readers: readers.clone(), act };
-    let mut pacer = Pacer::new(world, consumer, senders, policies.iter().copied(), Speed::Times(1.0));
-    pacer.run(0, shared);
-    let left = pacer.left();
-    let Pacer { clock, tallies, mut senders, stretched, .. } = pacer;
+    let pace = Pace::new(world, Speed::Times(1.0), shared.clone());
+    let mut pacer = Pacer { pace, ring: consumer, lanes };
+    pacer.run(0);
+    pacer.give_up();
+    let Pacer { pace: Pace { clock, stretched, .. }, mut lanes, .. } = pacer;
     let end = clock.now;
     drop(clock);
     let mut readers = Arc::into_inner(readers).unwrap().into_inner().unwrap();
-    for (reader, sender) in readers.iter_mut().zip(&mut senders) {
+    for (reader, lane) in readers.iter_mut().zip(&mut lanes) {
         reader.far.stall(false);
         reader.read();
         // The rest of a packet that was taken in part.
-        let _ = sender.send(&[]);
+        let _ = lane.sender.send(&[]);
         reader.read();
     }
-    Ran { made, left, tallies, readers, end, stretched }
+    let accounts = lanes.into_iter().zip(made).map(|(lane, made)| lane.account(made, end)).collect();
+    Ran { accounts, readers, end, stretched }
 }
 
 impl Ran {
     /// What holds whatever happened: each packet and each sample is sent, dropped or queued; what was sent is what
     /// arrived, each once, whole, in order; the lateness of each was recorded. Gives back the times that are missing.
     fn check(&self, link: usize) -> Vec<i64> {
-        let (tally, made) = (&self.tallies[link], &self.made);
-        assert_eq!(made.packets[link], tally.packets + tally.dropped + self.left.packets[link], "packets");
-        if self.tallies.len() == 1 {
-            let sensor = &tally.sensors[0];
-            assert_eq!(made.samples[0][0], sensor.sent + sensor.dropped + self.left.samples[0], "samples");
-        }
+        let Account { made, tally, left, .. } = &self.accounts[link];
+        assert_eq!(made.packets, tally.packets + tally.dropped + left.packets, "packets");
+        let sensor = &tally.sensors[0];
+        assert_eq!(made.samples[0], sensor.sent + sensor.dropped + left.samples[0], "samples");
         let times = self.readers[link].times();
         assert_eq!(times.len() as u64, tally.packets, "sent is received");
         assert_eq!(self.readers[link].received.len() as u64, tally.bytes);
         assert!(times.is_sorted_by(|a, b| a < b), "in order");
         assert_eq!(tally.sensors[0].lateness_count(), tally.packets);
-        (0..made.packets[link] as i64).filter(|t| times.binary_search(t).is_err()).collect()
+        (0..made.packets as i64).filter(|t| times.binary_search(t).is_err()).collect()
     }
 
     fn latest_ms(&self, link: usize) -> f64 {
-        self.tallies[link].sensors[0].latest_ns() as f64 / MS as f64
+        self.accounts[link].tally.sensors[0].latest_ns() as f64 / MS as f64
     }
 }
 
@@ -191,7 +192,7 @@ fn a_scene_that_asks_too_much_gets_what_the_link_carries_and_the_rest_is_counted
             }
         });
         let lost = ran.check(0);
-        let tally = &ran.tallies[0];
+        let tally = &ran.accounts[0].tally;
         match policy {
             Overload::Stretch => {
                 assert!(lost.is_empty());
@@ -201,7 +202,7 @@ fn a_scene_that_asks_too_much_gets_what_the_link_carries_and_the_rest_is_counted
             }
             _ => {
                 assert!(lost.len() > 300, "{policy:?}: {}", lost.len());
-                assert_eq!(tally.dropped + ran.left.packets[0], lost.len() as u64);
+                assert_eq!(tally.dropped + ran.accounts[0].left.packets, lost.len() as u64);
                 // The link is never idle: it carries all it can until the end, one linkful more or less.
                 let (linkfuls, periods) =
                     (tally.bytes as f64 / CARRIED as f64, ran.end as f64 / (32 * MS) as f64);
@@ -223,13 +224,13 @@ fn a_scene_that_asks_too_much_gets_what_the_link_carries_and_the_rest_is_counted
 
 #[test]
 fn a_reader_that_never_comes_back_leaves_what_waits_in_the_queue() {
-    let shared = Shared::default();
+    let shared = Arc::<Shared>::default();
     for policy in POLICIES {
-        let ran = run_until(SCENE, &[policy], 2000, &Shared::default(), absent(300, 3000));
+        let ran = run_until(SCENE, &[policy], 2000, &Arc::<Shared>::default(), absent(300, 3000));
         ran.check(0);
         // The last second of patience ends a second after the last packet.
         let queued = if policy == Overload::DropOldest { BACKLOG as u64 } else { 0 };
-        assert_eq!(ran.left.packets, [queued], "{policy:?}");
+        assert_eq!(ran.accounts[0].left.packets, queued, "{policy:?}");
     }
     // A scene that stands still ends when it is told to, and what was due and what was not are left.
     let ran = run_until(SCENE, &[Overload::Stretch], 2000, &shared, |ms, readers| {
@@ -239,7 +240,7 @@ fn a_reader_that_never_comes_back_leaves_what_waits_in_the_queue() {
         shared.stop.store(ms > 5000, Ordering::Relaxed);
     });
     let lost = ran.check(0);
-    assert_eq!((ran.tallies[0].dropped, ran.left.packets[0]), (0, lost.len() as u64));
+    assert_eq!((ran.accounts[0].tally.dropped, ran.accounts[0].left.packets), (0, lost.len() as u64));
     assert_eq!(lost, (lost[0]..1000).collect::<Vec<_>>());
 }
 
@@ -250,7 +251,7 @@ fn a_port_that_is_unplugged_gets_the_present_when_it_is_back_and_the_gap_is_told
             readers[0].far.unplug((200..450).contains(&ms) || (700..800).contains(&ms));
             readers[0].read();
         });
-        let (lost, gap) = (ran.check(0), &ran.tallies[0].gaps);
+        let (lost, gap) = (ran.check(0), &ran.accounts[0].tally.gaps);
         if policy == Overload::Stretch {
             // The scene waits for it: the second time is 250 ms of scene earlier.
             assert_eq!((lost.len(), gap.count, gap.dropped, ran.stretched), (0, 2, 0, 350 * MS));
@@ -267,19 +268,20 @@ fn a_port_that_is_unplugged_gets_the_present_when_it_is_back_and_the_gap_is_told
 fn a_clock_that_steps_makes_packets_late_and_each_is_told() {
     let (scene, step) = (plan(SCENE), 200 * MS);
     for (policy, capacity) in POLICIES.iter().flat_map(|policy| [(*policy, 1 << 20), (*policy, 4000)]) {
-        let shared = Shared::default();
+        let shared = Arc::<Shared>::default();
         let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-        let made = produce(&scene, &[Output::to("jsonl@pty".parse().unwrap())], ring, &shared);
+        let made = produce(&scene, &[Output::to("jsonl@pty".parse().unwrap())], ring, &shared).remove(0);
         let (sender, far) = memory(capacity);
         let readers = Arc::new(Mutex::new(vec![Reader { far, received: Vec::new() }]));
         let world = World { now: 0, readers: readers.clone(), act: absent(0, 0) };
         // Half a second on, the machine sleeps for 200 ms: nobody does anything meanwhile.
         let clock = Stepping { world, at: 500 * MS, step };
-        let mut pacer = Pacer::new(clock, consumer, vec![sender], [policy], Speed::Times(1.0));
-        pacer.run(0, &shared);
-        let left = pacer.left();
-        let tally = &pacer.tallies[0];
-        assert_eq!(made.packets[0], tally.packets + tally.dropped + left.packets[0], "{policy:?}");
+        let pace = Pace::new(clock, Speed::Times(1.0), shared.clone());
+        let mut pacer = Pacer { pace, ring: consumer, lanes: vec![Lane::new(sender, policy)] };
+        pacer.run(0);
+        pacer.give_up();
+        let Lane { tally, left, .. } = &pacer.lanes[0];
+        assert_eq!(made.packets, tally.packets + tally.dropped + left.packets, "{policy:?}");
         assert_eq!(tally.sensors[0].lateness_count(), tally.packets);
         let latest = tally.sensors[0].latest_ns();
         assert!((latest - step).abs() < MS / 2, "{policy:?}: {latest} ns");
@@ -339,7 +341,7 @@ fn one_stalling_reader_neither_delays_nor_drops_the_packets_of_the_others() {
 #[test]
 fn no_policy_allocates_in_the_pacing_thread() {
     for policy in POLICIES {
-        let (plan, shared) = (plan(SCENE), Shared::default());
+        let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
         let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
         produce(&plan, &[Output::to("jsonl@pty".parse().unwrap())], ring, &shared);
         let (sender, far) = memory(1 << 20);
@@ -349,9 +351,10 @@ fn no_policy_allocates_in_the_pacing_thread() {
             readers[0].far.unplug((600..700).contains(&ms));
         };
         let world = World { now: 0, readers, act };
-        let mut pacer = Pacer::new(world, consumer, vec![sender], [policy], Speed::Times(1.0));
-        let counted = allocation_counter::measure(|| pacer.run(0, &shared));
-        assert!(pacer.tallies[0].packets >= 600 && pacer.tallies[0].gaps.count == 1);
+        let pace = Pace::new(world, Speed::Times(1.0), shared.clone());
+        let mut pacer = Pacer { pace, ring: consumer, lanes: vec![Lane::new(sender, policy)] };
+        let counted = allocation_counter::measure(|| pacer.run(0));
+        assert!(pacer.lanes[0].tally.packets >= 600 && pacer.lanes[0].tally.gaps.count == 1);
         assert_eq!(counted.count_total, 0, "{policy:?}");
     }
 }
@@ -369,7 +372,7 @@ proptest! {
         let mut until = [0; 3];
         let mut reads = [true; 3];
         let mut over = 0;
-        let shared = Shared::default();
+        let shared = Arc::<Shared>::default();
         let ran = run_until(SCENE, &POLICIES, capacity, &shared, |ms, readers| {
             if ms >= over {
                 let (link, whim, lasts) = whims.next().unwrap();
@@ -390,11 +393,11 @@ proptest! {
             shared.stop.store(ms > 3000, Ordering::Relaxed);
         });
         for link in 0..3 {
-            let tally = &ran.tallies[link];
-            prop_assert_eq!(ran.made.packets[link], tally.packets + tally.dropped + ran.left.packets[link]);
+            let Account { made, tally, left, .. } = &ran.accounts[link];
+            prop_assert_eq!(made.packets, tally.packets + tally.dropped + left.packets);
+            let sensor = &tally.sensors[0];
+            prop_assert_eq!(made.samples[0], sensor.sent + sensor.dropped + left.samples[0]);
         }
-        let sent: u64 = ran.tallies.iter().map(|tally| tally.sensors[0].sent + tally.sensors[0].dropped).sum();
-        prop_assert_eq!(ran.made.samples.iter().map(|made| made[0]).sum::<u64>(), sent + ran.left.samples[0]);
-        prop_assert_eq!(ran.tallies.iter().map(|tally| tally.dropped).sum::<u64>(), shared.dropped.load(Ordering::Relaxed));
+        prop_assert_eq!(ran.accounts.iter().map(|it| it.tally.dropped).sum::<u64>(), shared.dropped.load(Ordering::Relaxed));
     }
 }

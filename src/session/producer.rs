@@ -1,12 +1,11 @@
-//! The producer thread: plays the plan, encodes, and keeps the ring full.
+//! What the producer thread does: it plays the plan, has packets made of it, and keeps the ring full.
 
+use super::feed::Feed;
 use super::{Item, Shared};
 use crate::motion::Truth;
 use crate::player::{BLOCK, Moment, Player};
-use crate::scene::{Output, Plan};
-use crate::sensor::ByKind;
+use crate::scene::Plan;
 use crate::time::SimTime;
-use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Protocol, Setup, dialogue::Peer};
 use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -20,106 +19,47 @@ const AHEAD: Duration = Duration::from_millis(1);
 /// The rest is made in blocks of so few ticks that little is computed in vain at its end.
 const REST_BLOCK: usize = 32;
 
-/// What is to be made.
+/// What is to be played.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Task<'a> {
     pub plan: &'a Plan,
-    pub outputs: &'a [Output],
-    /// What is known of the other side of each output.
-    pub peers: &'a [Peer],
     /// Scene time at which it ends.
     pub end: SimTime,
     /// How long the vehicle is held still before the scene at the least; `None` begins with the scene.
     pub rest: Option<SimTime>,
 }
 
-/// Samples made, and made but still waiting in an encoder for a packet: of each output, by sensor kind. And packets
-/// made of them, of each output.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Made {
-    pub samples: Vec<ByKind<u64>>,
-    pub waiting: Vec<ByKind<u64>>,
-    pub packets: Vec<u64>,
-    /// What faults have done, of each output.
-    pub faults: Vec<Vec<Acts>>,
-}
-
-/// Each output's encoder, once nothing more is made: it knows how to take leave.
-pub(super) type Encoders = Vec<Box<dyn Encoder>>;
-
 /// Everything stopped before the end.
 struct Stopped;
 
-/// Plays the task into the ring.
-pub(super) fn produce(task: Task<'_>, ring: Producer<Item>, shared: &Shared) -> (Made, Encoders) {
-    let Task { plan, outputs, peers, end, rest } = task;
-    let setup = |i: usize| Setup {
-        sensors: &plan.sensors,
-        axes: plan.axes,
-        day: plan.day,
-        options: outputs[i].wire,
-        peer: peers.get(i).copied().unwrap_or_default(),
-    };
-    let encoders: Encoders =
-        outputs.iter().enumerate().map(|(i, output)| wire::encoder(output.to.protocol, &setup(i))).collect();
-    let faults = outputs
-        .iter()
-        .enumerate()
-        .map(|(i, output)| Faults::new(&output.faults, output.to.protocol, plan.seed, i));
-    let mut maker = Maker {
-        protocols: outputs.iter().map(|output| output.to.protocol).collect(),
-        samples: vec![ByKind::default(); outputs.len()],
-        encoders,
-        faults: faults.collect(),
-        made: vec![0; outputs.len()],
-        packets: Vec::new(),
-        items: Vec::new(),
-        start: SimTime::ZERO,
-        resting: rest.is_some(),
-        ring,
-        shared,
-    };
+/// Plays the task into the ring; gives back the feeds, which know what was made and how to take leave.
+pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, shared: &Shared) -> Vec<Feed> {
+    let mut maker = Maker { feeds, items: Vec::new(), start: SimTime::ZERO, ring, shared };
     // Stopping early is no failure: what was made is counted either way.
-    let _ = maker.play(plan, end, rest);
+    let _ = maker.play(task);
     maker.end();
     shared.all_made.store(true, Ordering::Release);
-    let waiting = maker.encoders.iter().map(|encoder| encoder.waiting()).collect();
-    let samples = maker.samples.iter().zip(&maker.faults);
-    let samples = samples.map(|(made, faults)| faults.as_ref().map_or(*made, |faults| faults.account(*made)));
-    let made = Made {
-        samples: samples.collect(),
-        waiting,
-        packets: maker.made,
-        faults: maker.faults.into_iter().map(|faults| faults.map_or(Vec::new(), Faults::into_acts)).collect(),
-    };
-    (made, maker.encoders)
+    maker.feeds
 }
 
 struct Maker<'a> {
-    /// Of each output; one that has no place for a sensor makes no samples of it.
-    protocols: Vec<Protocol>,
-    encoders: Encoders,
-    faults: Vec<Option<Faults>>,
-    samples: Vec<ByKind<u64>>,
-    made: Vec<u64>,
-    packets: Vec<Packet>,
+    /// One an output.
+    feeds: Vec<Feed>,
+    /// What was made last.
     items: Vec<Item>,
     /// Stream time at which what is played began.
     start: SimTime,
-    /// Whether the vehicle is held still before the scene.
-    resting: bool,
     ring: Producer<Item>,
     shared: &'a Shared,
 }
 
 impl Maker<'_> {
-    fn play(&mut self, plan: &Plan, end: SimTime, rest: Option<SimTime>) -> Result<(), Stopped> {
+    fn play(&mut self, Task { plan, end, rest }: Task<'_>) -> Result<(), Stopped> {
         if let Some(rest) = rest {
             self.start = self.hold_still(plan, rest)?;
             self.shared.scene_starts_ns.store(self.start.0, Ordering::Release);
-            self.faults.iter_mut().flatten().for_each(|faults| faults.scene_starts(self.start));
-            self.resting = false;
         }
+        self.feeds.iter_mut().for_each(|feed| feed.scene_starts(self.start));
         Player::new(plan, end, BLOCK).play(|moment| self.make(moment))
     }
 
@@ -166,20 +106,10 @@ impl Maker<'_> {
             return Err(Stopped);
         }
         let t = self.start + t;
-        let truth = &Truth { t, ..*truth };
-        self.items.clear();
-        for output in 0..self.encoders.len() {
-            for reading in readings.iter().filter(|reading| self.protocols[output].carries(reading.kind)) {
-                self.samples[output][reading.kind as usize] += 1;
-            }
-            self.packets.clear();
-            self.encoders[output].encode(&Now { t, truth, readings }, &mut self.packets);
-            // What goes wrong goes wrong in the scene.
-            if let Some(faults) = self.faults[output].as_mut().filter(|_| !self.resting) {
-                faults.pass(t, &mut self.packets);
-                faults.settle(SimTime(self.shared.stream_ns.load(Ordering::Relaxed)));
-            }
-            self.count(output);
+        let moment = Moment { t, truth: &Truth { t, ..*truth }, readings };
+        let sent = self.shared.sent();
+        for (lane, feed) in self.feeds.iter_mut().enumerate() {
+            self.items.extend(feed.make(&moment, sent).iter().map(|&packet| Item { lane, packet }));
         }
         self.hand_over();
         Ok(())
@@ -187,28 +117,18 @@ impl Maker<'_> {
 
     /// What faults still hold goes out.
     fn end(&mut self) {
-        self.items.clear();
-        for output in 0..self.faults.len() {
-            self.packets.clear();
-            if let Some(faults) = &mut self.faults[output] {
-                faults.end(&mut self.packets);
-            }
-            self.count(output);
+        for (lane, feed) in self.feeds.iter_mut().enumerate() {
+            self.items.extend(feed.end().iter().map(|&packet| Item { lane, packet }));
         }
         self.hand_over();
     }
 
-    fn count(&mut self, output: usize) {
-        self.made[output] += self.packets.iter().filter(|packet| !packet.is_nothing()).count() as u64;
-        self.items.extend(self.packets.iter().map(|&packet| Item { output, packet }));
-    }
-
     fn hand_over(&mut self) {
-        if self.encoders.len() > 1 || self.faults.iter().any(Option::is_some) {
+        if self.feeds.len() > 1 || self.feeds.iter().any(Feed::is_faulty) {
             // A packet due between two ticks of one output must not wait behind a later one of another.
             self.items.sort_by_key(|item| item.packet.due);
         }
-        self.items.iter().for_each(|item| push(&mut self.ring, *item, self.shared));
+        self.items.drain(..).for_each(|item| push(&mut self.ring, item, self.shared));
     }
 }
 

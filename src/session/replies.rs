@@ -3,9 +3,6 @@
 //! Before the stream begins the control side writes them itself. From then on the links belong to the pacing thread,
 //! and they reach it over a ring a link, so that it neither waits nor locks.
 
-use super::Shared;
-use super::pacer::{Pacer, Speed};
-use crate::clock::Clock;
 use crate::link::{Sender, Sent};
 use crate::time::SimTime;
 use crate::wire::{MAX_PACKET, Packet};
@@ -81,35 +78,14 @@ pub(super) struct Replies {
     unsent: Option<Packet>,
 }
 
-impl<C: Clock> Pacer<C> {
-    /// Writes the next reply to each link; what came of it.
-    pub(super) fn reply(&mut self, shared: &Shared) -> Replied {
-        let mut replied = Replied::Nothing;
-        for output in 0..self.replies.len() {
-            let Some(replies) = &mut self.replies[output] else { continue };
-            let Some(packet) = replies.unsent.take().or_else(|| replies.ring.pop().ok()) else { continue };
-            if self.gone[output].is_some() {
-                continue;
-            }
-            let sender = &mut self.senders[output];
-            let sent = match self.speed {
-                // A link that is full all the time would never take it otherwise.
-                Speed::Max => sender.send_all(packet.bytes(), &shared.stop),
-                Speed::Times(_) => sender.send(packet.bytes()),
-            };
-            match sent {
-                Sent::Done => {
-                    self.tallies[output].replies += 1;
-                    replied = replied.max(Replied::Some);
-                }
-                Sent::Full => {
-                    replies.unsent = Some(packet);
-                    replied = Replied::Full;
-                }
-                Sent::Away => {}
-                Sent::Gone(kind) => self.gone[output] = Some(kind),
-            }
-        }
-        replied
+impl Replies {
+    /// Takes the next one.
+    pub(super) fn next(&mut self) -> Option<Packet> {
+        self.unsent.take().or_else(|| self.ring.pop().ok())
+    }
+
+    /// Puts one back that its link did not take: it is the next again.
+    pub(super) fn keep(&mut self, packet: Packet) {
+        self.unsent = Some(packet);
     }
 }

@@ -1,17 +1,18 @@
 //! Half an hour of every protocol on a virtual clock: nothing lost, nothing out of order.
 
-use super::pacer::Pacer;
 use super::producer::{self, Task};
-use super::tests::{memory, plan};
+use super::tests::{feeds, memory, pacer, plan};
 use super::*;
 use crate::clock::Clock;
 use crate::link::Far;
 use crate::player::{BLOCK, Player};
-use crate::scene::Overload;
+use crate::scene::{Output, Plan};
 use crate::sensor::SensorKind;
+use crate::time::SimTime;
 use crate::wire::samples::Samples;
 use crate::wire::{self, Now, Protocol, Setup};
 use std::convert::Infallible;
+use std::sync::Arc;
 use std::thread;
 
 /// Half an hour of it.
@@ -60,24 +61,25 @@ fn encoded(plan: &Plan, protocol: Protocol) -> Vec<u8> {
 
 fn half_an_hour(plan: &Plan, protocol: Protocol) {
     let name = protocol.name();
-    let shared = Shared::default();
+    let shared = Arc::<Shared>::default();
     let outputs = [Output::to(format!("{name}@pty").parse().unwrap())];
     let (ring, consumer) = rtrb::RingBuffer::new(8192);
     // As a pty holds: what the other side does not read in time would be lost.
     let (sender, far) = memory(20_000);
     let (made, mut pacer) = thread::scope(|scope| {
-        let task = Task { plan, outputs: &outputs, peers: &[], end: plan.duration, rest: None };
+        let task = Task { plan, end: plan.duration, rest: None };
+        let feeds = feeds(plan, &outputs);
         let shared = &shared;
-        let producer = scope.spawn(move || producer::produce(task, ring, shared).0);
+        let producer = scope.spawn(move || producer::produce(task, feeds, ring, shared).remove(0).made());
         let clock = Reading { now: 0, far, bytes: Vec::new() };
-        let mut pacer = Pacer::new(clock, consumer, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
-        pacer.run(0, shared);
+        let mut pacer = pacer(clock, consumer, sender, Speed::Times(1.0), shared);
+        pacer.run(0);
         (producer.join().unwrap(), pacer)
     });
-    pacer.clock.bytes.extend(pacer.clock.far.take());
-    let (tally, bytes) = (&pacer.tallies[0], &pacer.clock.bytes);
-    assert_eq!((tally.packets, tally.dropped), (made.packets[0], 0), "{name}");
-    assert_eq!(made.samples[0][..3], [90_000, 90_000, 45_000], "{name}");
+    pacer.pace.clock.bytes.extend(pacer.pace.clock.far.take());
+    let (tally, bytes) = (&pacer.lanes[0].tally, &pacer.pace.clock.bytes);
+    assert_eq!((tally.packets, tally.dropped), (made.packets, 0), "{name}");
+    assert_eq!(made.samples[..3], [90_000, 90_000, 45_000], "{name}");
     assert!(
         tally.sensors[0].latest_ns() > 500_000,
         "{name}: the clock was late, {}",

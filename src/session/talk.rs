@@ -2,18 +2,19 @@
 //!
 //! It reads no clock and waits for nothing: the control side hands it bytes and the time.
 
-use super::answers::Heard;
-use super::replies::{Replies, Way};
+use super::heard::{Heard, Judgement, Judging};
+use super::lane::Lane;
+use super::side::Side;
 use crate::link::Sender;
 use crate::scene::Output;
-use crate::wire::dialogue::{self, Dialogue, Peer, Said, Stage};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use crate::time::SimTime;
+use crate::wire::dialogue::{self, Dialogue, Said, Stage};
 use std::thread::Thread;
 
 /// Everything that is said on all links.
 pub(super) struct Talk {
-    sides: Vec<Side>,
+    /// One an output.
+    pub sides: Vec<Side>,
     pub heard: Heard,
     notices: Vec<String>,
     /// Whether the user knows that estimates are not judged.
@@ -24,36 +25,9 @@ pub(super) struct Talk {
     pub pacing: Option<Thread>,
 }
 
-/// One link's conversation.
-struct Side {
-    dialogue: Option<Box<dyn Dialogue>>,
-    protocol: &'static str,
-    way: Way,
-    /// Bytes that came, and messages among them.
-    bytes: u64,
-    messages: u64,
-    took: Arc<AtomicU64>,
-}
-
 impl Talk {
-    /// One sender an output.
-    pub(super) fn new(outputs: &[Output], senders: Vec<Sender>, heard: Heard) -> Talk {
-        let side = |(output, sender): (&Output, Sender)| Side {
-            dialogue: dialogue::dialogue(output.to.protocol, output.wire.controller),
-            protocol: output.to.protocol.name(),
-            way: Way::Link(sender, 0),
-            bytes: 0,
-            messages: 0,
-            took: Arc::default(),
-        };
-        let sides = outputs.iter().zip(senders).map(side).collect();
+    pub(super) fn new(sides: Vec<Side>, heard: Heard) -> Talk {
         Talk { sides, heard, notices: Vec::new(), told_untimed: false, ground: None, pacing: None }
-    }
-
-    /// Holds this conversation on a link in place of its protocol's own.
-    #[cfg(test)]
-    pub(super) fn script(&mut self, link: usize, dialogue: Box<dyn Dialogue>) {
-        self.sides[link].dialogue = Some(dialogue);
     }
 
     /// Passes on to a ground station what the controller on a link says.
@@ -87,18 +61,19 @@ impl Talk {
     }
 
     fn said(&mut self, link: usize, said: Said<'_>, now: i64) {
+        let side = &mut self.sides[link];
         match said {
             Said::Estimate(estimate) if self.heard.is_timed(&estimate) => {
-                self.heard.take_in(link, estimate, now);
+                side.estimates.extend(self.heard.take_in(estimate, now));
             }
             Said::Estimate(_) => {
                 if !std::mem::replace(&mut self.told_untimed, true) {
                     self.notices.push("attitudes come back that do not say which sample they rest on; at --speed max nothing else tells when they held, so they are not judged: leave --speed out".into());
                 }
             }
-            Said::Reply(bytes) => self.reply(link, bytes),
+            Said::Reply(bytes) => side.reply(bytes),
             Said::Took => {
-                self.sides[link].took.fetch_add(1, Ordering::Release);
+                side.took();
                 if let Some(pacing) = &self.pacing {
                     pacing.unpark();
                 }
@@ -113,63 +88,26 @@ impl Talk {
         }
     }
 
-    fn reply(&mut self, link: usize, bytes: &[u8]) {
-        // Whoever asked and is not answered asks again.
-        let _ = self.sides[link].way.reply(bytes);
-    }
-
     /// Passes on to the controller what the ground station says.
     pub(super) fn pass_down(&mut self, datagram: &[u8]) {
         let Some(&(_, link)) = self.ground.as_ref() else { return };
-        dialogue::frames(datagram).for_each(|frame| self.reply(link, frame));
+        dialogue::frames(datagram).for_each(|frame| self.sides[link].reply(frame));
     }
 
     /// Gives a link away to the pacing thread.
-    pub(super) fn hand_over(&mut self, link: usize) -> (Sender, Option<Replies>) {
-        let side = &mut self.sides[link];
-        let (sender, replies) = side.way.hand_over();
+    pub(super) fn lane(&mut self, link: usize, output: &Output) -> Lane {
         let bridged = self.ground.as_ref().is_some_and(|(_, with)| *with == link);
-        (sender, (side.dialogue.is_some() || bridged).then_some(replies))
-    }
-
-    /// Counts the packets that the other side of a link has taken.
-    pub(super) fn took(&self, link: usize) -> Arc<AtomicU64> {
-        self.sides[link].took.clone()
-    }
-
-    fn stages(&self) -> impl Iterator<Item = Stage> {
-        self.sides.iter().map(|side| side.dialogue.as_ref().map_or(Stage::Ready, |dialogue| dialogue.stage()))
+        self.sides[link].lane(output, bridged)
     }
 
     /// The first link on which nobody may be sent samples yet.
     pub(super) fn silent(&self) -> Option<usize> {
-        self.stages().position(|stage| stage == Stage::Silent)
+        self.sides.iter().position(|side| side.stage() == Stage::Silent)
     }
 
     /// The first link whose other side is not ready for the scene.
     pub(super) fn unready(&self) -> Option<usize> {
-        self.stages().position(|stage| stage < Stage::Ready)
-    }
-
-    /// What came on a link, for whoever waited in vain.
-    pub(super) fn what_came(&self, link: usize) -> String {
-        let Side { protocol, bytes, messages, .. } = &self.sides[link];
-        match (bytes, messages) {
-            (0, _) => {
-                "nothing came from it (is it switched on, wired TX to RX, and at this end of the link?)"
-                    .into()
-            }
-            (_, 0) => format!(
-                "{bytes} bytes came and no {protocol} message among them (is it at this baud rate, and does it speak {protocol} on this port?)"
-            ),
-            _ => format!("{messages} messages came in {bytes} bytes, but not what it begins with"),
-        }
-    }
-
-    /// What is known of each other side.
-    pub(super) fn peers(&self) -> Vec<Peer> {
-        let known = |side: &Side| side.dialogue.as_ref().map_or(Peer::default(), |dialogue| dialogue.peer());
-        self.sides.iter().map(known).collect()
+        self.sides.iter().position(|side| side.stage() < Stage::Ready)
     }
 
     /// What the user should know and was not told yet.
@@ -177,16 +115,28 @@ impl Talk {
         std::mem::take(&mut self.notices)
     }
 
-    /// Damaged packets, by link.
-    pub(super) fn damaged(&self) -> Vec<u64> {
-        self.sides
-            .iter()
-            .map(|side| side.dialogue.as_ref().map_or(0, |dialogue| dialogue.damaged()))
-            .collect()
+    /// Whether any estimate of the scene came.
+    pub(super) fn has_estimates(&self) -> bool {
+        self.sides.iter().any(|side| !side.estimates.is_empty())
     }
 
-    /// Replies that each link took before it was given away.
-    pub(super) fn replies(&self) -> Vec<u64> {
-        self.sides.iter().map(|side| side.way.written()).collect()
+    /// Judges the estimates of the side that said most, of a scene that was played up to `played`.
+    pub(super) fn judge(&self, judging: Judging, played: SimTime) -> Judgement {
+        let most = self.sides.iter().rev().map(|side| &side.estimates).max_by_key(|said| said.len());
+        let most = most.filter(|said| !said.is_empty());
+        most.map_or_else(Judgement::default, |said| self.heard.judge(said, judging, played))
+    }
+}
+
+#[cfg(test)]
+impl Talk {
+    /// Holds this conversation on a link in place of its protocol's own.
+    pub(super) fn script(&mut self, link: usize, dialogue: Box<dyn Dialogue>) {
+        self.sides[link].dialogue = Some(dialogue);
+    }
+
+    /// When the newest estimate arrived, in scene time.
+    pub(super) fn newest_arrival(&self) -> Option<SimTime> {
+        self.sides.iter().filter_map(|side| Some(side.estimates.last()?.arrival)).max()
     }
 }

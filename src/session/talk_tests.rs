@@ -1,21 +1,27 @@
 //! Conversations on a virtual clock: what is said and when, holding still, lockstep.
 
-use super::answers::Heard;
-use super::lockstep::Step;
+use super::feed::Made;
+use super::heard::Heard;
+use super::pace::Pace;
 use super::pacer::Pacer;
-use super::producer::{self, Made, Task};
+use super::producer::{self, Task};
+use super::side::Side;
+use super::step::Step;
 use super::talk::Talk;
-use super::tests::{memory, plan};
+use super::tally::Tally;
+use super::tests::{feeds, memory, plan};
 use super::*;
 use crate::clock::Clock;
 use crate::geometry::Attitude;
 use crate::link::Far;
 use crate::player::{BLOCK, Player};
-use crate::scene::Overload;
+use crate::scene::{Output, Plan};
 use crate::sensor::SensorKind;
+use crate::time::SimTime;
 use crate::wire::dialogue::{Dialogue, Estimate, Said, Stage, Stamp};
 use std::convert::Infallible;
-use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 use std::thread;
 
 const MS: i64 = 1_000_000;
@@ -69,7 +75,7 @@ fn output(to: &str) -> Output {
 fn letters(plan: &Arc<Plan>, shared: &Arc<Shared>, speed: Speed, capacity: usize) -> (Talk, Far) {
     let (sender, far) = memory(capacity);
     let heard = Heard::new(plan.clone(), shared.clone(), speed, false);
-    let mut talk = Talk::new(&[output("csv@pty")], vec![sender], heard);
+    let mut talk = Talk::new(vec![Side::new(&output("csv@pty"), sender)], heard);
     talk.script(0, Box::new(Letters::default()));
     (talk, far)
 }
@@ -97,7 +103,7 @@ impl<F: FnMut(i64) + Send> Clock for World<F> {
 struct Ran {
     made: Made,
     text: String,
-    tally: tally::LinkTally,
+    tally: Tally,
     end: i64,
 }
 
@@ -136,12 +142,13 @@ fn live(
     let there = Mutex::new((far, Vec::<u8>::new()));
     let (ring, consumer) = rtrb::RingBuffer::new(8192);
     let outputs = [output("csv@pty")];
-    let (sender, replies) = talk.lock().unwrap().hand_over(0);
-    let took = talk.lock().unwrap().took(0);
+    let mut lane = talk.lock().unwrap().lane(0, &outputs[0]);
+    lane.step = lockstep.then(|| Step::new(talk.lock().unwrap().sides[0].counter()));
     let (made, tally, end) = thread::scope(|scope| {
-        let task = Task { plan: &plan, outputs: &outputs, peers: &[], end: plan.duration, rest };
-        let shared = &*shared;
-        let producer = scope.spawn(move || producer::produce(task, ring, shared).0);
+        let task = Task { plan: &plan, end: plan.duration, rest };
+        let feeds = feeds(&plan, &outputs);
+        let shared = &shared;
+        let producer = scope.spawn(move || producer::produce(task, feeds, ring, shared).remove(0).made());
         let world = World {
             now: 0,
             act: |ms| {
@@ -153,19 +160,18 @@ fn live(
                 shared.ready.store(talk.unready().is_none(), Ordering::Relaxed);
             },
         };
-        let mut pacer = Pacer::new(world, consumer, vec![sender], [Overload::DropNewest], speed);
-        pacer.replies = vec![replies];
-        pacer.steps = vec![lockstep.then(|| Step::new(took))];
-        pacer.run(0, shared);
-        let end = pacer.clock.now;
+        let pace = Pace::new(world, speed, shared.clone());
+        let mut pacer = Pacer { pace, ring: consumer, lanes: vec![lane] };
+        pacer.run(0);
+        let end = pacer.pace.clock.now;
         // What is left of a packet that the link took in part.
-        while pacer.senders[0].kept() > 0 {
+        while pacer.lanes[0].sender.kept() > 0 {
             let (far, text) = &mut *there.lock().unwrap();
             text.extend(far.take());
-            let _ = pacer.senders[0].send(&[]);
+            let _ = pacer.lanes[0].sender.send(&[]);
         }
-        let mut tally = pacer.tallies.remove(0);
-        tally.replies += talk.lock().unwrap().replies()[0];
+        let mut tally = pacer.lanes.remove(0).tally;
+        tally.replies += talk.lock().unwrap().sides[0].replies();
         (producer.join().unwrap(), tally, end)
     });
     let (mut far, mut text) = there.into_inner().unwrap();
@@ -219,7 +225,7 @@ fn the_vehicle_is_held_still_until_the_other_side_is_ready_and_then_the_scene_is
             let whole = (0..ticks.len() as u64).map(|k| rate.tick(k).0).collect::<Vec<_>>();
             assert_eq!(ticks, whole, "{kind} ticks through the seam as if there were none");
             assert_eq!(
-                ran.made.samples[0][kind as usize],
+                ran.made.samples[kind as usize],
                 ticks.len() as u64,
                 "the counts have the rest in them"
             );
@@ -244,18 +250,26 @@ fn before_the_stream_replies_go_out_at_once_and_what_came_is_told() {
     talk.tick(10 * MS);
     talk.tick(500 * MS);
     assert_eq!(far.take(), b"[who?]\n[who?]\n", "its own requests");
-    assert!(talk.what_came(0).starts_with("nothing came"), "our own questions are not its answers");
+    assert!(talk.sides[0].what_came().starts_with("nothing came"), "our own questions are not its answers");
     talk.hear(0, b"???", 501 * MS);
-    assert!(talk.what_came(0).starts_with("3 bytes came and no csv message"), "{}", talk.what_came(0));
-    assert_eq!((talk.damaged(), talk.silent()), (vec![3], Some(0)));
+    assert!(
+        talk.sides[0].what_came().starts_with("3 bytes came and no csv message"),
+        "{}",
+        talk.sides[0].what_came()
+    );
+    assert_eq!((talk.sides[0].damaged(), talk.silent()), (3, Some(0)));
     talk.hear(0, b"p", 502 * MS);
-    assert!(talk.what_came(0).starts_with("1 messages came in 4 bytes"), "{}", talk.what_came(0));
+    assert!(
+        talk.sides[0].what_came().starts_with("1 messages came in 4 bytes"),
+        "{}",
+        talk.sides[0].what_came()
+    );
     talk.hear(0, b"h", 503 * MS);
     assert_eq!((talk.silent(), talk.unready()), (None, Some(0)));
     assert_eq!(far.take(), b"[hello]\n");
     talk.hear(0, b"r", 504 * MS);
     assert_eq!(talk.unready(), None);
-    assert_eq!(talk.replies(), [3]);
+    assert_eq!(talk.sides[0].replies(), 3);
 }
 
 #[test]
@@ -371,9 +385,9 @@ fn the_pacing_thread_allocates_nothing_while_it_replies_and_keeps_step() {
     let plan = Arc::new(plan(tests::SCENE));
     let shared = Arc::new(Shared::before(None));
     let (mut talk, _far) = letters(&plan, &shared, Speed::Times(1.0), 1 << 20);
-    let (sender, replies) = talk.hand_over(0);
+    let mut lane = talk.lane(0, &output("csv@pty"));
     talk.hear(0, &[b'h'; 50], 0);
-    let took = talk.took(0);
+    let took = talk.sides[0].counter();
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
     tests::produce(&plan, &[output("csv@pty")], ring, &shared);
     // Each packet is answered in the next millisecond.
@@ -382,12 +396,12 @@ fn the_pacing_thread_allocates_nothing_while_it_replies_and_keeps_step() {
         now: 0,
         act: move |_| answers.store(sent.packets.load(Ordering::Relaxed), Ordering::Relaxed),
     };
-    let mut pacer = Pacer::new(world, consumer, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
-    pacer.replies = vec![replies];
-    pacer.steps = vec![Some(Step::new(took))];
-    let counted = allocation_counter::measure(|| pacer.run(0, &shared));
-    assert!(pacer.tallies[0].packets > 2000);
-    assert_eq!((pacer.tallies[0].replies, counted.count_total), (50, 0));
+    lane.step = Some(Step::new(took));
+    let pace = Pace::new(world, Speed::Times(1.0), shared.clone());
+    let mut pacer = Pacer { pace, ring: consumer, lanes: vec![lane] };
+    let counted = allocation_counter::measure(|| pacer.run(0));
+    assert!(pacer.lanes[0].tally.packets > 2000);
+    assert_eq!((pacer.lanes[0].tally.replies, counted.count_total), (50, 0));
 }
 
 #[test]
@@ -397,8 +411,8 @@ fn estimates_of_the_rest_count_for_nothing_and_those_of_the_scene_are_set_agains
         // The seam is at 3 s, and the scene's first packet is due then.
         let expected = (ms > 3000).then_some(SimTime((ms - 3000) * MS));
         assert_eq!(
-            talk.heard.newest_arrival(),
-            expected.or_else(|| talk.heard.newest_arrival().filter(|_| ms == 3000)),
+            talk.newest_arrival(),
+            expected.or_else(|| talk.newest_arrival().filter(|_| ms == 3000)),
             "{ms}"
         );
     });

@@ -1,11 +1,9 @@
 //! Counting without allocating: what was sent and dropped, how late, how evenly.
 
-use crate::os;
-use crate::report::{SensorReport, Times};
-use crate::scene::Plan;
-use crate::sensor::{ByKind, SensorKind};
+use super::gaps::Gaps;
+use crate::report::Times;
+use crate::sensor::ByKind;
 use crate::wire::Packet;
-use std::time::Duration;
 
 /// One sensor on one link.
 #[derive(Clone, Debug, Default)]
@@ -18,9 +16,9 @@ pub(super) struct SensorTally {
     last: Option<i64>,
     /// From the first to the last of each stretch without a pause, summed, ns.
     span: i64,
-    late: Times,
-    interval: Times,
-    write: Times,
+    pub late: Times,
+    pub interval: Times,
+    pub write: Times,
 }
 
 impl SensorTally {
@@ -40,37 +38,19 @@ impl SensorTally {
         self.last = None;
     }
 
+    /// Adds what another link has counted of the same sensor, but for its rate.
+    pub(super) fn add(&mut self, other: &SensorTally) {
+        self.sent += other.sent;
+        self.dropped += other.dropped;
+        self.replaced += other.replaced;
+        self.late.add(&other.late);
+        self.interval.add(&other.interval);
+        self.write.add(&other.write);
+    }
+
     /// (n − 1)/(t_last − t_first), numerator and denominator summed over stretches without a pause, Hz.
-    fn hz(&self) -> Option<f64> {
+    pub(super) fn hz(&self) -> Option<f64> {
         (self.span > 0).then(|| self.interval.count() as f64 / (self.span as f64 * 1e-9))
-    }
-}
-
-/// How much of a core the calling thread uses, pauses left out.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Effort {
-    used: Duration,
-    spent: i64,
-    since: Option<(Duration, i64)>,
-}
-
-impl Effort {
-    /// Counts from now (ns) on.
-    pub(super) fn resume(&mut self, now: i64) {
-        self.since = Some((os::thread_cpu_time(), now));
-    }
-
-    /// Counts up to now.
-    pub(super) fn pause(&mut self, now: i64) {
-        if let Some((used, began)) = self.since.take() {
-            self.used += os::thread_cpu_time().saturating_sub(used);
-            self.spent += now - began;
-        }
-    }
-
-    /// The share of a core; `None` before anything was counted.
-    pub(super) fn share(&self) -> Option<f64> {
-        (self.spent > 0).then(|| self.used.as_secs_f64() / (self.spent as f64 * 1e-9))
     }
 }
 
@@ -88,8 +68,8 @@ impl SensorTally {
 }
 
 /// One link.
-#[derive(Clone, Debug)]
-pub(super) struct LinkTally {
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tally {
     pub packets: u64,
     pub bytes: u64,
     pub dropped: u64,
@@ -103,21 +83,7 @@ pub(super) struct LinkTally {
     last_bytes: u64,
 }
 
-impl LinkTally {
-    pub(super) fn new() -> LinkTally {
-        LinkTally {
-            packets: 0,
-            bytes: 0,
-            dropped: 0,
-            replies: 0,
-            sensors: Default::default(),
-            gaps: Gaps::default(),
-            first: 0,
-            last: 0,
-            last_bytes: 0,
-        }
-    }
-
+impl Tally {
     /// Counts a packet as sent at `now`, `late` ns after it was due, in a call of `write` ns.
     pub(super) fn sent(&mut self, packet: &Packet, now: i64, late: i64, write: i64) {
         self.gaps.end(now);
@@ -140,10 +106,7 @@ impl LinkTally {
             sensors.filter(|(i, _)| packet.carries >> i & 1 == 1).map(|(_, sensor)| sensor.dropped += 1);
         let samples = lost.count() as u64;
         self.dropped += 1;
-        if self.gaps.since.is_some() {
-            self.gaps.dropped += 1;
-            self.gaps.samples += samples;
-        }
+        self.gaps.lost(samples);
         samples
     }
 
@@ -163,84 +126,5 @@ impl LinkTally {
     pub(super) fn bytes_per_s(&self) -> Option<f64> {
         let span = (self.last - self.first) as f64 * 1e-9;
         (span > 0.0).then(|| (self.bytes - self.last_bytes) as f64 / span)
-    }
-}
-
-/// When a port was pulled out.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Gaps {
-    pub count: u64,
-    pub total_ns: i64,
-    /// Packets dropped meanwhile, and the samples in them.
-    pub dropped: u64,
-    pub samples: u64,
-    since: Option<i64>,
-}
-
-impl Gaps {
-    /// The port was found gone.
-    pub(super) fn begin(&mut self, now: i64) {
-        if self.since.is_none() {
-            self.since = Some(now);
-            self.count += 1;
-        }
-    }
-
-    /// It took a packet again, or nothing more is to be sent.
-    pub(super) fn end(&mut self, now: i64) {
-        if let Some(since) = self.since.take() {
-            self.total_ns += now - since;
-        }
-    }
-}
-
-/// Every sensor's report: counts summed over links, histograms merged; `made` and `queued` are by kind.
-/// `paced` says whether lateness means anything.
-pub(super) fn sensors(
-    plan: &Plan,
-    tallies: &[LinkTally],
-    made: ByKind<u64>,
-    queued: ByKind<u64>,
-    paced: bool,
-) -> Vec<SensorReport> {
-    plan.sensors
-        .iter()
-        .map(|sensor| report(sensor.kind, sensor.rate.as_hz(), tallies, made, queued, paced))
-        .collect()
-}
-
-fn report(
-    kind: SensorKind,
-    rate_hz: f64,
-    tallies: &[LinkTally],
-    made: ByKind<u64>,
-    queued: ByKind<u64>,
-    paced: bool,
-) -> SensorReport {
-    let mut all = SensorTally::default();
-    let mut sent_hz = None;
-    for tally in tallies.iter().map(|link| &link.sensors[kind as usize]) {
-        all.sent += tally.sent;
-        all.dropped += tally.dropped;
-        all.replaced += tally.replaced;
-        all.late.add(&tally.late);
-        all.interval.add(&tally.interval);
-        all.write.add(&tally.write);
-        sent_hz = sent_hz.or(tally.hz());
-    }
-    SensorReport {
-        name: kind.name().to_string(),
-        rate_hz,
-        sent_hz: sent_hz.filter(|_| paced),
-        received_hz: None,
-        made: made[kind as usize],
-        sent: all.sent,
-        dropped: all.dropped,
-        replaced: all.replaced,
-        queued: queued[kind as usize],
-        late_us: all.late.late().filter(|_| paced),
-        interval_us: all.interval.interval().filter(|_| paced),
-        write_us: all.write.spread(),
-        timing: None,
     }
 }

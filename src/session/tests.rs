@@ -1,12 +1,20 @@
+use super::account::Account;
+use super::feed::{Feed, Made};
+use super::lane::Lane;
+use super::pace::Pace;
 use super::pacer::Pacer;
-use super::producer::{self, Made, Task};
+use super::producer::{self, Task};
 use super::*;
 use crate::clock::{Clock, VirtualClock};
 use crate::link::{self, Far, Sender};
 use crate::player::Player;
-use crate::scene::Overload;
+use crate::report::SensorReport;
+use crate::scene::{Output, Overload, Plan};
 use crate::wire::{self, Protocol, Setup};
 use std::convert::Infallible;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 /// 1 kHz gyro and accel, 100 Hz mag, for a second.
 pub(super) const SCENE: &str = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"100 Hz\"\n";
@@ -19,17 +27,48 @@ fn output(text: &str) -> Output {
     Output::to(text.parse().unwrap_or_else(|error| panic!("{error}")))
 }
 
+/// The producer's halves of these outputs.
+pub(super) fn feeds(plan: &Plan, outputs: &[Output]) -> Vec<Feed> {
+    let feed = |(i, output)| Feed::new(plan, i, output, Default::default());
+    outputs.iter().enumerate().map(feed).collect()
+}
+
 /// Makes a whole scene's packets, with no rest before it.
-pub(super) fn produce(plan: &Plan, outputs: &[Output], ring: rtrb::Producer<Item>, shared: &Shared) -> Made {
-    let task = Task { plan, outputs, peers: &[], end: plan.duration, rest: None };
-    producer::produce(task, ring, shared).0
+pub(super) fn produce(
+    plan: &Plan,
+    outputs: &[Output],
+    ring: rtrb::Producer<Item>,
+    shared: &Shared,
+) -> Vec<Made> {
+    let task = Task { plan, end: plan.duration, rest: None };
+    let feeds = producer::produce(task, feeds(plan, outputs), ring, shared);
+    feeds.into_iter().map(Feed::made).collect()
 }
 
 /// The ring of a whole scene, made ahead, and what was made.
 pub(super) fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) {
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
-    let made = produce(plan, &[output(to)], ring, shared);
+    let made = produce(plan, &[output(to)], ring, shared).remove(0);
     (consumer, made)
+}
+
+/// A pacer of one output that drops what its link does not take.
+pub(super) fn pacer<C: Clock>(
+    clock: C,
+    ring: rtrb::Consumer<Item>,
+    sender: Sender,
+    speed: Speed,
+    shared: &Arc<Shared>,
+) -> Pacer<C> {
+    let lanes = vec![Lane::new(sender, Overload::DropNewest)];
+    Pacer { pace: Pace::new(clock, speed, shared.clone()), ring, lanes }
+}
+
+/// The report of each sensor of a scene that was paced over one output.
+pub(super) fn reports(plan: &Plan, pacer: &mut Pacer<impl Clock>, made: Made) -> Vec<SensorReport> {
+    let account = pacer.lanes.remove(0).account(made, 0);
+    let report = |sensor| Account::sensor(std::slice::from_ref(&account), sensor, true);
+    plan.sensors.iter().map(report).collect()
 }
 
 pub(super) fn memory(capacity: usize) -> (Sender, Far) {
@@ -41,28 +80,28 @@ pub(super) fn memory(capacity: usize) -> (Sender, Far) {
 
 /// The identity that nothing is missed silently, in samples of every kind.
 pub(super) fn accounts_balance(made: &Made, pacer: &mut Pacer<impl Clock>) {
-    let left = pacer.left();
+    pacer.give_up();
+    let Lane { tally, left, .. } = &pacer.lanes[0];
     for kind in 0..3 {
-        let tally = &pacer.tallies[0].sensors[kind];
-        let queued = left.samples[kind] + made.waiting[0][kind];
-        assert_eq!(made.samples[0][kind], tally.sent + tally.dropped + queued, "kind {kind}");
+        let sensor = &tally.sensors[kind];
+        let queued = left.samples[kind] + made.waiting[kind];
+        assert_eq!(made.samples[kind], sensor.sent + sensor.dropped + queued, "kind {kind}");
     }
-    let tally = &pacer.tallies[0];
-    assert_eq!(made.packets[0], tally.packets + tally.dropped + left.packets[0], "packets");
+    assert_eq!(made.packets, tally.packets + tally.dropped + left.packets, "packets");
 }
 
 #[test]
 fn lateness_is_what_the_clock_did_and_everything_is_sent() {
-    let (plan, shared) = (plan(SCENE), Shared::default());
+    let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
     let (ring, made) = made(&plan, "mpu@pty", &shared);
     let (sender, mut far) = memory(1 << 20);
     // Every fourth wake-up is 30 µs late.
     let clock = VirtualClock::waking_late([0, 0, 0, 30_000]);
-    let mut pacer = Pacer::new(clock, ring, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
-    pacer.run(1_000_000, &shared);
+    let mut pacer = pacer(clock, ring, sender, Speed::Times(1.0), &shared);
+    pacer.run(1_000_000);
     accounts_balance(&made, &mut pacer);
-    assert_eq!(made.samples[0], [1000, 1000, 100, 0, 0, 0]);
-    let reports = tally::sensors(&plan, &pacer.tallies, made.samples[0], Default::default(), true);
+    assert_eq!(made.samples, [1000, 1000, 100, 0, 0, 0]);
+    let reports = reports(&plan, &mut pacer, made);
     let late = reports[0].late_us.unwrap();
     assert_eq!((late.min, late.p50), (0.0, 0.0));
     assert!((late.max - 30.0).abs() < 0.03 && (late.p99 - 30.0).abs() < 0.03, "{late:?}");
@@ -78,18 +117,12 @@ fn lateness_is_what_the_clock_did_and_everything_is_sent() {
 #[test]
 fn scene_time_goes_as_fast_as_asked() {
     for times in [0.5, 1.0, 4.0] {
-        let (plan, shared) = (plan(SCENE), Shared::default());
+        let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
         let (ring, _) = made(&plan, "mpu@pty", &shared);
         let (sender, _far) = memory(1 << 20);
-        let mut pacer = Pacer::new(
-            VirtualClock::default(),
-            ring,
-            vec![sender],
-            [Overload::DropNewest],
-            Speed::Times(times),
-        );
-        pacer.run(0, &shared);
-        let report = &tally::sensors(&plan, &pacer.tallies, Default::default(), Default::default(), true)[0];
+        let mut pacer = pacer(VirtualClock::default(), ring, sender, Speed::Times(times), &shared);
+        pacer.run(0);
+        let report = &reports(&plan, &mut pacer, Made::default())[0];
         assert!((report.sent_hz.unwrap() / 1000.0 - times).abs() < 1e-6 * times, "{times}");
         assert_eq!(report.late_us.unwrap().max, 0.0, "a virtual clock is never late");
     }
@@ -97,16 +130,15 @@ fn scene_time_goes_as_fast_as_asked() {
 
 #[test]
 fn a_reader_that_stops_and_resumes_costs_exactly_what_is_counted() {
-    let (plan, shared) = (plan(SCENE), Shared::default());
+    let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
     let (ring, made) = made(&plan, "mpu@pty", &shared);
     let (sender, mut far) = memory(4096);
-    let mut pacer =
-        Pacer::new(VirtualClock::default(), ring, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
-    pacer.run(0, &shared);
+    let mut pacer = pacer(VirtualClock::default(), ring, sender, Speed::Times(1.0), &shared);
+    pacer.run(0);
     accounts_balance(&made, &mut pacer);
-    let tally = &pacer.tallies[0];
+    let tally = &pacer.lanes[0].tally;
     assert!(tally.dropped > 0 && tally.packets > 100, "{} dropped of {}", tally.dropped, tally.packets);
-    let there = far.take().len() + pacer.senders[0].kept();
+    let there = far.take().len() + pacer.lanes[0].sender.kept();
     assert_eq!(there as u64, tally.bytes, "what was counted as sent is there");
     assert_eq!(
         shared.dropped.load(Ordering::Relaxed),
@@ -116,21 +148,21 @@ fn a_reader_that_stops_and_resumes_costs_exactly_what_is_counted() {
 
 #[test]
 fn a_link_that_goes_away_ends_the_run_and_the_rest_counts_as_queued() {
-    let (plan, shared) = (plan(SCENE), Shared::default());
+    let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
     let (ring, made) = made(&plan, "mpu@pty", &shared);
     let (sender, mut far) = memory(1 << 20);
     far.leave();
-    let mut pacer =
-        Pacer::new(VirtualClock::default(), ring, vec![sender], [Overload::DropNewest], Speed::Times(1.0));
-    pacer.run(0, &shared);
-    assert!(pacer.gone[0].is_some());
-    assert!(pacer.left().samples[0] > 0, "the rest is left");
+    let mut pacer = pacer(VirtualClock::default(), ring, sender, Speed::Times(1.0), &shared);
+    pacer.run(0);
+    assert!(pacer.lanes[0].end.is_some());
+    pacer.give_up();
+    let Lane { sender, left, .. } = pacer.lanes.remove(0);
+    assert!(left.samples[0] > 0, "the rest is left");
     let (ring, made_again) = self::made(&plan, "mpu@pty", &shared);
     assert_eq!(made, made_again);
     pacer.ring = ring;
-    pacer.tallies = vec![tally::LinkTally::new()];
-    pacer.gone = vec![None];
-    pacer.run(0, &shared);
+    pacer.lanes.push(Lane::new(sender, Overload::DropNewest));
+    pacer.run(0);
     accounts_balance(&made, &mut pacer);
 }
 
@@ -140,16 +172,15 @@ fn samples_that_newer_ones_replace_are_counted_as_dropped() {
         plan(
             "duration = \"1 s\"\n[gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"1 kHz\"\n[mag]\nrate = \"7 Hz\"\n",
         ),
-        Shared::default(),
+        Arc::<Shared>::default(),
     );
     let (ring, made) = made(&plan, "mavlink@pty", &shared);
     let (sender, _far) = memory(1 << 20);
-    let mut pacer =
-        Pacer::new(VirtualClock::default(), ring, vec![sender], [Overload::DropNewest], Speed::Max);
-    pacer.run(0, &shared);
-    let accel = &pacer.tallies[0].sensors[1];
+    let mut pacer = pacer(VirtualClock::default(), ring, sender, Speed::Max, &shared);
+    pacer.run(0);
+    let accel = &pacer.lanes[0].tally.sensors[1];
     // Message k carries the newest of ten; the nine after the last message wait for one that never comes.
-    assert_eq!((accel.sent, accel.dropped, made.waiting[0][1]), (100, 9 * 99, 9));
+    assert_eq!((accel.sent, accel.dropped, made.waiting[1]), (100, 9 * 99, 9));
     accounts_balance(&made, &mut pacer);
 }
 
@@ -158,16 +189,16 @@ fn the_pacing_thread_allocates_nothing() {
     for (to, speed) in
         [("mpu@pty", Speed::Times(1.0)), ("mavlink@pty", Speed::Max), ("csv@pty", Speed::Times(2.0))]
     {
-        let (plan, shared) = (plan(SCENE), Shared::default());
+        let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
         let (ring, _) = made(&plan, to, &shared);
         let file = tempfile::NamedTempFile::new().unwrap();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         let address = format!("file:{}", file.path().display()).parse().unwrap();
         let mut link = runtime.block_on(link::Link::open(&address)).unwrap();
         let clock = VirtualClock::waking_late([0, 5_000]);
-        let mut pacer = Pacer::new(clock, ring, vec![link.sender()], [Overload::DropNewest], speed);
-        let counted = allocation_counter::measure(|| pacer.run(0, &shared));
-        assert!(pacer.tallies[0].packets > 1000);
+        let mut pacer = pacer(clock, ring, link.sender(), speed, &shared);
+        let counted = allocation_counter::measure(|| pacer.run(0));
+        assert!(pacer.lanes[0].tally.packets > 1000);
         assert_eq!(counted.count_total, 0, "{to}");
     }
 }
@@ -178,21 +209,8 @@ fn a_run_at_full_speed_sends_the_bytes_that_encoding_offline_gives() {
         let plan = Arc::new(plan(SCENE));
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("packets");
-        let job = Job {
-            plan: plan.clone(),
-            outputs: vec![output(&format!("{protocol}@file:{}", path.display()))],
-            end: plan.duration,
-            rest: None,
-            ground: None,
-            speed: Speed::Max,
-            wait: Duration::from_secs(1),
-            command: Vec::new(),
-            keep_stdout: false,
-            judging: Judging::default(),
-            cpu: None,
-            watch: None,
-            tap: None,
-        };
+        let outputs = vec![output(&format!("{protocol}@file:{}", path.display()))];
+        let job = Job { speed: Speed::Max, wait: Duration::from_secs(1), ..Job::new(plan.clone(), outputs) };
         let outcome = run(job, &mut |_| {}).unwrap();
         assert_eq!(outcome.played, plan.duration);
         for block in [1, 7, 4096] {

@@ -74,9 +74,9 @@ impl Watching {
         Watching { asked, next: SimTime::ZERO, seen: Watched::default() }
     }
 
-    /// Whether the bare timer's turn comes before this packet.
-    pub(super) fn interrupts(&self, packet: &Packet) -> bool {
-        packet.due >= self.next
+    /// Whether the bare timer's turn comes before what is due at `t`.
+    pub(super) fn interrupts(&self, t: SimTime) -> bool {
+        t >= self.next
     }
 
     /// The bare timer's slice; answers where scene time 0 is then, so that the stream goes on as if there had been

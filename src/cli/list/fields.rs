@@ -1,19 +1,22 @@
 //! Fields of reports, as `--limit` names them.
 
 use super::{List, Refusal};
-use crate::cli::{listen, run, score, timing};
+use crate::cli::{listen, score};
+use crate::report::TimingReport;
 use crate::scene::{Destination, Output, Plan};
 use crate::sensor::SensorKind;
+use crate::session::Job;
 use serde_json::Value;
+use std::sync::Arc;
 
 /// Every number of each report, with its unit.
 pub fn list() -> Result<List, Refusal> {
     // Any plan with three sensors and a fault will do: fields go by the report's shape.
     let plan = Plan::load("still", &[])?;
     let to: Destination = "mpu@pty".parse().map_err(Refusal)?;
-    let output = Output::to(to.clone());
-    let run = serde_json::to_value(run::shape(&plan, std::slice::from_ref(&output)))?;
-    let timing = serde_json::to_value(timing::shape(&plan, &output))?;
+    let run = Job::new(Arc::new(plan), vec![Output::to(to.clone())]).shape();
+    let timing = serde_json::to_value(TimingReport::shape(run.clone()))?;
+    let run = serde_json::to_value(run)?;
     let listen = serde_json::to_value(listen::shape(&to))?;
     let score = serde_json::json!({ "estimates": [serde_json::to_value(score::shape("estimate"))?] });
     let played = format!("NAME of sensors: {}; of links their number, from 0", SensorKind::names());
@@ -72,7 +75,7 @@ mod tests {
     fn every_field_that_is_listed_is_one_that_a_limit_may_name() {
         let plan = Plan::load("still", &[]).unwrap();
         let output = Output::to("mpu@pty".parse().unwrap());
-        let report = serde_json::to_value(run::shape(&plan, &[output])).unwrap();
+        let report = serde_json::to_value(Job::new(Arc::new(plan), vec![output]).shape()).unwrap();
         let fields = numbers("", &report);
         assert!(fields.len() > 40, "{fields:?}");
         for field in fields {

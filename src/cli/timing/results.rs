@@ -1,85 +1,46 @@
 //! From what was measured to the report, as JSON and as a person reads it.
 
-use super::run::{self, Ended};
-use super::{Measured, Refusal};
+use super::Measured;
+use super::ledger::Sensor;
 use crate::cli::terminal::Stream;
-use crate::report::{Baseline, Late, Limit, SensorReport, SensorTiming, Spread, TimingReport, number};
-use crate::scene::{Output, Plan};
-use crate::session::Speed;
-use std::slice::from_ref;
+use crate::report::{Baseline, Late, Report, SensorReport, SensorTiming, TimingReport, number};
+use crate::scene::Plan;
 
-/// A report with every field that there can be.
-pub fn shape(plan: &Plan, output: &Output) -> TimingReport {
-    let mut run = run::shape(plan, from_ref(output));
-    for sensor in &mut run.sensors {
-        sensor.timing = Some(SensorTiming {
-            sent_ppm: Some(0.0),
-            received_ppm: Some(0.0),
-            overdue: 0,
-            received: Some(0),
-            missed: Some(0),
-            transit_us: Some(Spread::default()),
-        });
-    }
-    run.attitude = None;
-    TimingReport {
-        run,
-        received_by: None,
-        baseline: Baseline { rate_hz: 0.0, wakes: 0, overdue: 0, late_us: Some(Late::default()) },
-        ratio_p99: Some(0.0),
-        unrecorded: 0,
-    }
-}
-
-/// Puts in what was measured.
-pub fn fill(report: &mut TimingReport, measured: &Measured) {
+/// What was measured, not judged yet: a report of this shape.
+pub fn report(shape: TimingReport, plan: &Plan, measured: &Measured) -> TimingReport {
     let Measured { outcome, ledger, far, rate } = measured;
-    run::fill(&mut report.run, outcome, Speed::Times(1.0));
-    let bare = measured.bare();
-    for (sensor, seen) in report.run.sensors.iter_mut().zip(&ledger.sensors) {
-        let ppm = |hz: f64| (hz / sensor.rate_hz - 1.0) * 1e6;
-        let received = far.is_some();
-        sensor.received_hz = seen.received_hz();
-        sensor.timing = Some(SensorTiming {
-            sent_ppm: sensor.sent_hz.map(ppm),
-            received_ppm: sensor.received_hz.map(ppm),
-            overdue: seen.overdue,
-            received: received.then_some(seen.received),
-            missed: received.then_some(seen.missed),
-            transit_us: seen.transit.spread(),
-        });
+    let mut run = Report { faults: shape.run.faults, attitude: None, ..outcome.report(plan, "") };
+    for (sensor, seen) in run.sensors.iter_mut().zip(&ledger.sensors) {
+        add(sensor, seen, far.is_some());
     }
-    if let (Some((_, came)), Some(link)) = (far, report.run.links.first_mut()) {
+    if let (Some((_, came)), Some(link)) = (far, run.links.first_mut()) {
         link.lost_seq = came.lost_seq;
         link.crc_errors += came.damaged;
     }
-    report.received_by = far.as_ref().map(|(who, _)| *who);
-    report.baseline = Baseline {
-        rate_hz: rate.as_hz(),
-        wakes: bare.count(),
-        overdue: bare.above((rate.period() * 1e9) as i64),
-        late_us: bare.late(),
-    };
-    let first = report.run.sensors.first().and_then(|sensor| sensor.late_us);
-    report.ratio_p99 = first.zip(report.baseline.late_us).map(|(ours, bare)| ours.p99 / bare.p99);
+    let baseline = Baseline::new(&measured.bare(), *rate);
+    let first = run.sensors.first().and_then(|sensor| sensor.late_us);
     let unrecorded = outcome.watched.as_ref().map_or(0, |watched| watched.unrecorded);
-    report.unrecorded = unrecorded + far.as_ref().map_or(0, |(_, came)| came.unrecorded);
+    TimingReport {
+        run,
+        received_by: far.as_ref().map(|(who, _)| *who),
+        baseline,
+        ratio_p99: first.zip(baseline.late_us).map(|(ours, bare)| ours.p99 / bare.p99),
+        unrecorded: unrecorded + far.as_ref().map_or(0, |(_, came)| came.unrecorded),
+    }
 }
 
-/// Losses at either end, and broken limits.
-pub fn judge(report: &mut TimingReport, limits: &[Limit], interrupted: bool) -> Result<(), Refusal> {
-    run::judge(&mut report.run, &[], &Ended { interrupted, ..Ended::default() })?;
-    let missed = report.run.sensors.iter().filter_map(|sensor| {
-        let missed = sensor.timing?.missed?;
-        // What was dropped is told already.
-        (missed > sensor.dropped).then(|| format!("sensors.{}.missed = {missed} > 0", sensor.name))
+/// Adds what was seen of a sensor, at the other end too where somebody received.
+fn add(sensor: &mut SensorReport, seen: &Sensor, received: bool) {
+    let ppm = |hz: f64| (hz / sensor.rate_hz - 1.0) * 1e6;
+    sensor.received_hz = seen.received_hz();
+    sensor.timing = Some(SensorTiming {
+        sent_ppm: sensor.sent_hz.map(ppm),
+        received_ppm: sensor.received_hz.map(ppm),
+        overdue: seen.overdue,
+        received: received.then_some(seen.received),
+        missed: received.then_some(seen.missed),
+        transit_us: seen.transit.spread(),
     });
-    let missed: Vec<_> = missed.collect();
-    report.run.failed.extend(missed);
-    let value = serde_json::to_value(&*report)?;
-    report.run.failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
-    report.run.ok = report.run.failed.is_empty();
-    Ok(())
 }
 
 /// Everything on a screenful.

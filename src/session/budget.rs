@@ -1,11 +1,11 @@
 //! The link budget: bytes a second that an output needs against what its baud rate carries.
 
-use crate::link::{Address, STANDARD_BAUDS, bytes_per_second};
+use super::ways_out::WaysOut;
+use crate::link::bytes_per_second;
 use crate::report::number;
 use crate::scene::{Destination, Output, Overload, Plan};
 use crate::sensor::SensorPlan;
-use crate::time::Rate;
-use crate::wire::{self, Layout, Protocol, Setup};
+use crate::wire::{self, Protocol, Setup};
 use std::fmt;
 
 /// What an output asks of its link, and what the link has.
@@ -47,7 +47,7 @@ impl Budget {
         let mut budget =
             Budget { to: output.to.clone(), packets_per_s, bytes_per_s, capacity, ways_out: Vec::new() };
         if let Some(capacity) = capacity.filter(|_| !budget.fits()) {
-            let ways = Ways { plan, output, capacity, needed: bytes_per_s, load: &load };
+            let ways = WaysOut { plan, output, capacity, needed: bytes_per_s, load: &load };
             budget.ways_out = ways.all();
         }
         budget
@@ -91,117 +91,32 @@ impl fmt::Display for Budget {
     }
 }
 
-/// Looks for what would fit.
-struct Ways<'a, L> {
-    plan: &'a Plan,
-    output: &'a Output,
-    capacity: f64,
-    needed: f64,
-    /// Bytes and packets a second of these sensors so sent.
-    load: &'a L,
-}
-
-impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> Ways<'_, L> {
-    fn all(&self) -> Vec<String> {
-        let mut ways: Vec<_> = self.lower_rate().into_iter().collect();
-        ways.extend(self.other_packets());
-        ways.push(self.higher_baud());
-        if self.output.overload != Overload::Stretch {
-            let times = self.needed / self.capacity;
-            ways.push(format!(
-                "lose nothing and take {} times as long: overload = \"stretch\" in [[output]]",
-                number(times)
-            ));
-        }
-        ways.push(
-            "start in spite of it, and lose what does not fit: --force, or force = true in [[output]]".into(),
-        );
-        ways
-    }
-
-    /// The highest whole rate in Hz to which the faster sensors can be slowed down.
-    fn lower_rate(&self) -> Option<String> {
-        let at = |hz: u32| {
-            let mut sensors = self.plan.sensors.clone();
-            for sensor in sensors.iter_mut().filter(|sensor| sensor.rate.as_hz() > f64::from(hz)) {
-                sensor.rate = Rate::hz(hz);
+/// Refuses outputs that their links do not carry, unless their user wants them so: `force`, or an output that gives
+/// packets up or stretches scene time. Those that go on are told of with `warn`.
+///
+/// # Errors
+/// What is refused, with what would fit, a line each.
+pub fn afford(
+    plan: &Plan,
+    outputs: &[Output],
+    speed: f64,
+    force: bool,
+    warn: &mut dyn FnMut(String),
+) -> Result<(), String> {
+    let mut refused = Vec::new();
+    for output in outputs.iter().filter(|output| output.to.address.baud().is_some()) {
+        let budget = Budget::of(plan, output, speed);
+        let stretched = output.overload == Overload::Stretch;
+        match budget.fits() {
+            true => {}
+            false if force || output.force || stretched => {
+                let but = if stretched { "scene time is stretched" } else { "the rest is lost" };
+                warn(format!("{}; {but}", budget.arithmetic()));
             }
-            (self.load)(&sensors, self.output.to.protocol, self.output.wire).0
-        };
-        let fastest = self.plan.sensors.iter().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
-        let (mut fits, mut not) = (0, fastest.ceil() as u32);
-        while not - fits > 1 {
-            let hz = fits + (not - fits) / 2;
-            *(if at(hz) <= self.capacity { &mut fits } else { &mut not }) = hz;
-        }
-        let slowed: Vec<_> =
-            self.plan.sensors.iter().filter(|sensor| sensor.rate.as_hz() > f64::from(fits)).collect();
-        let sets: Vec<_> =
-            slowed.iter().map(|sensor| format!("--set {}.rate='{fits} Hz'", sensor.kind)).collect();
-        (fits > 0).then(|| format!("a lower rate: {} needs {} bytes/s", sets.join(" "), number(at(fits))))
-    }
-
-    /// Each other layout and protocol that fits, or that none does.
-    fn other_packets(&self) -> Vec<String> {
-        let here = self.output.to.protocol;
-        let mut others = Vec::new();
-        let layouts = [(Layout::Separate, "separate"), (Layout::Burst, "burst")];
-        for (layout, name) in layouts.into_iter().filter(|_| here == Protocol::Mpu) {
-            let options = wire::Options { layout: Some(layout), ..self.output.wire };
-            if wire::check(here, &options, &self.plan.sensors).is_ok() {
-                others.push((format!("layout = \"{name}\""), self.bytes(here, options)));
-            }
-        }
-        // Packets that leave samples out are no way out.
-        let carries_all = |protocol: &Protocol| wire::warnings(*protocol, &self.plan.sensors).is_empty();
-        for protocol in Protocol::ALL.into_iter().filter(|it| *it != here && carries_all(it)) {
-            others.push((protocol.name().into(), self.bytes(protocol, wire::Options::default())));
-        }
-        // What the output sends already is no other.
-        others.retain(|(_, bytes)| *bytes != self.needed);
-        others.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let say = |(what, bytes): &(String, f64)| format!("{what} needs {} bytes/s", number(*bytes));
-        let fitting: Vec<_> = others.iter().filter(|(_, bytes)| *bytes <= self.capacity).map(say).collect();
-        if !fitting.is_empty() {
-            return fitting.iter().map(|what| format!("other packets: {what}")).collect();
-        }
-        let none: Vec<_> = others.iter().map(say).collect();
-        vec![format!("no other packets: {}", none.join(", "))]
-    }
-
-    fn bytes(&self, protocol: Protocol, options: wire::Options) -> f64 {
-        (self.load)(&self.plan.sensors, protocol, options).0
-    }
-
-    /// What a baud rate means to a device that is USB all the way.
-    fn usb(&self) -> &'static str {
-        match &self.output.to.address {
-            Address::Serial { path, .. } if path.to_string_lossy().contains("ttyACM") => {
-                " (a USB device of this kind usually takes any, and runs at the speed of USB)"
-            }
-            _ => "",
+            false => refused.push(budget.to_string()),
         }
     }
-
-    /// The next standard speed that carries it.
-    fn higher_baud(&self) -> String {
-        let next = STANDARD_BAUDS.iter().find(|baud| bytes_per_second(**baud) >= self.needed);
-        match next {
-            Some(&baud) => {
-                let to = self.output.to.at(self.output.to.address.clone().at_baud(baud));
-                let (carried, usb) = (bytes_per_second(baud), self.usb());
-                format!(
-                    "a higher baud rate: {to} carries {} bytes/s, {:.0} % of it needed{usb}",
-                    number(carried),
-                    100.0 * self.needed / carried
-                )
-            }
-            None => format!(
-                "no standard baud rate carries it: it takes {} baud",
-                number((self.needed * 10.0).ceil())
-            ),
-        }
-    }
+    if refused.is_empty() { Ok(()) } else { Err(refused.join("\n")) }
 }
 
 #[cfg(test)]

@@ -1,0 +1,32 @@
+//! What the pacing thread costs.
+
+use crate::os;
+use std::time::Duration;
+
+/// How much of a core the calling thread uses, pauses left out.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Effort {
+    used: Duration,
+    spent: i64,
+    since: Option<(Duration, i64)>,
+}
+
+impl Effort {
+    /// Counts from now (ns) on.
+    pub(super) fn resume(&mut self, now: i64) {
+        self.since = Some((os::thread_cpu_time(), now));
+    }
+
+    /// Counts up to now.
+    pub(super) fn pause(&mut self, now: i64) {
+        if let Some((used, began)) = self.since.take() {
+            self.used += os::thread_cpu_time().saturating_sub(used);
+            self.spent += now - began;
+        }
+    }
+
+    /// The share of a core; `None` before anything was counted.
+    pub(super) fn share(&self) -> Option<f64> {
+        (self.spent > 0).then(|| self.used.as_secs_f64() / (self.spent as f64 * 1e-9))
+    }
+}

@@ -1,0 +1,131 @@
+//! All that the producer thread has of one output.
+
+use crate::player::Moment;
+use crate::scene::{Output, Plan};
+use crate::sensor::ByKind;
+use crate::time::SimTime;
+use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Protocol, Setup, dialogue::Peer};
+use std::collections::BTreeMap;
+
+/// The producer's half of an output: it makes packets of readings, and lets the output's faults act on them.
+pub(super) struct Feed {
+    /// One that has no place for a sensor makes no samples of it.
+    protocol: Protocol,
+    encoder: Box<dyn Encoder>,
+    faults: Option<Faults>,
+    /// What goes wrong goes wrong in the scene.
+    in_scene: bool,
+    /// Samples and packets made so far.
+    samples: ByKind<u64>,
+    packets: u64,
+    /// What was made last.
+    newest: Vec<Packet>,
+}
+
+/// What was made for one output.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Made {
+    /// Samples, and those among them that still wait in the encoder for a packet, of each kind.
+    pub samples: ByKind<u64>,
+    pub waiting: ByKind<u64>,
+    pub packets: u64,
+    /// What each fault has done.
+    pub faults: Vec<Acts>,
+}
+
+impl Feed {
+    /// Of the run's output `i`, with what is known of its other side.
+    pub(super) fn new(plan: &Plan, i: usize, output: &Output, peer: Peer) -> Feed {
+        let protocol = output.to.protocol;
+        let setup =
+            Setup { sensors: &plan.sensors, axes: plan.axes, day: plan.day, options: output.wire, peer };
+        Feed {
+            protocol,
+            encoder: wire::encoder(protocol, &setup),
+            faults: Faults::new(&output.faults, protocol, plan.seed, i),
+            in_scene: false,
+            samples: ByKind::default(),
+            packets: 0,
+            newest: Vec::new(),
+        }
+    }
+
+    /// Whether what it makes may go out at another time than that of its readings.
+    pub(super) fn is_faulty(&self) -> bool {
+        self.faults.is_some()
+    }
+
+    /// The scene begins at the stream time `t`.
+    pub(super) fn scene_starts(&mut self, t: SimTime) {
+        self.in_scene = true;
+        if let Some(faults) = &mut self.faults {
+            faults.scene_starts(t);
+        }
+    }
+
+    /// Packets of the readings at a moment of the stream, while it is sent as far as `sent`.
+    pub(super) fn make(&mut self, moment: &Moment<'_>, sent: SimTime) -> &[Packet] {
+        let Moment { t, truth, readings } = *moment;
+        for reading in readings.iter().filter(|reading| self.protocol.carries(reading.kind)) {
+            self.samples[reading.kind as usize] += 1;
+        }
+        self.newest.clear();
+        self.encoder.encode(&Now { t, truth, readings }, &mut self.newest);
+        if let Some(faults) = self.faults.as_mut().filter(|_| self.in_scene) {
+            faults.pass(t, &mut self.newest);
+            faults.settle(sent);
+        }
+        self.count()
+    }
+
+    /// At the end: what faults still hold goes out.
+    pub(super) fn end(&mut self) -> &[Packet] {
+        self.newest.clear();
+        if let Some(faults) = &mut self.faults {
+            faults.end(&mut self.newest);
+        }
+        self.count()
+    }
+
+    fn count(&mut self) -> &[Packet] {
+        self.packets += self.newest.iter().filter(|packet| !packet.is_nothing()).count() as u64;
+        &self.newest
+    }
+
+    /// What leaves the other side with a vehicle that has stopped at `t`; it is no part of the stream.
+    pub(super) fn farewell(&mut self, t: SimTime) -> &[Packet] {
+        self.newest.clear();
+        self.encoder.farewell(t, &mut self.newest);
+        &self.newest
+    }
+
+    /// What was made in all.
+    pub(super) fn made(self) -> Made {
+        Made {
+            samples: self.faults.as_ref().map_or(self.samples, |faults| faults.account(self.samples)),
+            waiting: self.encoder.waiting(),
+            packets: self.packets,
+            faults: self.faults.map_or(Vec::new(), Faults::into_acts),
+        }
+    }
+}
+
+impl Made {
+    /// Counts what faults did up to, not including, the stream time `t`.
+    pub(super) fn settle(&mut self, t: SimTime) {
+        self.faults.iter_mut().for_each(|acts| acts.settle(t));
+    }
+
+    /// The packets that each kind of the output's faults acted on.
+    pub(super) fn by_fault(&self, output: &Output) -> BTreeMap<&'static str, u64> {
+        let mut all: BTreeMap<_, _> = output.faults.iter().map(|fault| (fault.kind.name(), 0)).collect();
+        self.faults.iter().for_each(|acts| *all.entry(acts.kind.name()).or_default() += acts.packets);
+        all
+    }
+
+    /// The output's faults that acted: `mpu@pty drop from 2 s to 3 s`.
+    pub(super) fn fired(&self, output: &Output) -> Vec<String> {
+        let acted = self.faults.iter().filter(|acts| acts.packets > 0);
+        acted.map(|acts| format!("{} {}", output.to, acts.what)).collect()
+    }
+}

@@ -1,0 +1,107 @@
+//! What to run.
+
+use super::heard::Judging;
+use super::host::host;
+use super::pace::Speed;
+use super::watch::Watch;
+use crate::link::Address;
+use crate::report::{AttitudeReport, Host, LinkReport, PacingReport, Report, SensorReport};
+use crate::scene::{Output, Plan, Target};
+use crate::score::Figures;
+use crate::time::SimTime;
+use crate::wire::Protocol;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// What to run.
+#[derive(Debug)]
+pub struct Job {
+    /// The scene.
+    pub plan: Arc<Plan>,
+    /// Where to: at least one.
+    pub outputs: Vec<Output>,
+    /// Scene time at which it ends.
+    pub end: SimTime,
+    /// How long the vehicle is held still before the scene at the least, and then until every other side is ready;
+    /// `None` begins with the scene.
+    pub rest: Option<SimTime>,
+    /// A ground station, and which of the outputs has the controller that it is to talk to.
+    pub ground: Option<(Address, usize)>,
+    /// How fast scene time goes.
+    pub speed: Speed,
+    /// How long to wait for somebody on the other side; zero starts at once.
+    pub wait: Duration,
+    /// A program to start when the links are ready, with its arguments.
+    pub command: Vec<String>,
+    /// Whether standard output is ours alone: the command's then goes to standard error.
+    pub keep_stdout: bool,
+    /// How what the other side estimates is judged.
+    pub judging: Judging,
+    /// The processor that the pacing thread is to keep to.
+    pub cpu: Option<usize>,
+    /// A comparison with a bare timer, on the pacing thread.
+    pub watch: Option<Watch>,
+    /// Who takes in what comes back on the first link, in place of the score: a loopback plug returns the packets.
+    pub tap: Option<Tap>,
+}
+
+impl Job {
+    /// All of a scene in real time, to these outputs, with the rest that the most demanding target needs; nobody is
+    /// waited for.
+    pub fn new(plan: Arc<Plan>, outputs: Vec<Output>) -> Job {
+        Job {
+            end: plan.duration,
+            rest: outputs.iter().filter_map(|output| Some(output.to.target?.rest)).max(),
+            plan,
+            outputs,
+            ground: None,
+            speed: Speed::default(),
+            wait: Duration::ZERO,
+            command: Vec::new(),
+            keep_stdout: false,
+            judging: Judging::default(),
+            cpu: None,
+            watch: None,
+            tap: None,
+        }
+    }
+
+    /// Its first target, whose controller chooses what it takes of the scene.
+    pub fn target(&self) -> Option<&'static Target> {
+        self.outputs.iter().find_map(|output| output.to.target)
+    }
+
+    /// Its first output with a controller that a ground station can talk to.
+    pub fn mavlink(&self) -> Option<usize> {
+        self.outputs.iter().position(|output| output.to.protocol == Protocol::Mavlink)
+    }
+
+    /// A report with every field that the run can have: limits are checked against it before anything is opened.
+    pub fn shape(&self) -> Report {
+        let sensors = self.plan.sensors.iter();
+        let link = |output: &Output| {
+            let faults = output.faults.iter().map(|fault| fault.kind.name());
+            LinkReport::shape(&output.to.to_string(), output.overload.name(), faults)
+        };
+        Report {
+            faults: self.plan.faults_until(SimTime::FOREVER),
+            host: Host { pacing: Some(PacingReport::default()), ..host() },
+            sensors: sensors.map(|it| SensorReport::shape(it.kind.name(), it.rate.as_hz())).collect(),
+            links: self.outputs.iter().map(link).collect(),
+            attitude: Some(AttitudeReport { estimator: String::new(), figures: Figures::shape() }),
+            ..Report::new(&self.plan.name, self.plan.seed)
+        }
+    }
+}
+
+/// Called with bytes as they arrive.
+pub type OnBytes = dyn FnMut(&[u8]);
+
+/// Takes in what a link receives.
+pub struct Tap(pub Box<OnBytes>);
+
+impl std::fmt::Debug for Tap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Tap")
+    }
+}

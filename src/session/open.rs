@@ -1,0 +1,134 @@
+//! What the control side has of one output.
+
+use super::account::Account;
+use super::outside::Outside;
+use super::side::Side;
+use super::{Event, SessionError};
+use crate::link::{Address, Link, LinkError, bytes_per_second};
+use crate::report::LinkReport;
+use crate::scene::Output;
+use std::pin::pin;
+use std::time::Duration;
+use tokio::time::{Instant, sleep, timeout_at};
+
+/// Who comes within this is not told to be waited for: a command or a demonstration opens its link by itself.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// The control side's half of an output: its link, and what is seen of it without keeping the pacing thread waiting.
+pub(super) struct OpenOutput {
+    pub output: Output,
+    pub link: Link,
+    /// The fullest that the link's buffers were, bytes.
+    fullest: Option<usize>,
+    /// It is a port that was pulled out.
+    unplugged: bool,
+    /// Its reader has left for good.
+    pub abandoned: bool,
+}
+
+impl OpenOutput {
+    /// Opens its link.
+    pub(super) async fn open(output: &Output) -> Result<OpenOutput, LinkError> {
+        let link = Link::open(&output.to.address).await?;
+        Ok(OpenOutput { output: output.clone(), link, fullest: None, unplugged: false, abandoned: false })
+    }
+
+    /// What to connect to.
+    pub(super) fn name(&self) -> &str {
+        self.link.name()
+    }
+
+    /// Tells what the user should know of the link, and that it is open.
+    pub(super) fn introduce(&self, outside: &mut Outside<'_>) {
+        self.link.notices().iter().for_each(|notice| outside.notice(notice.clone()));
+        outside.tell(Event::Ready(&self.output.to.at(self.name())));
+    }
+
+    /// True when somebody is on the link; false when the user or the command ended the wait. `waited` is how long the
+    /// whole wait takes that ends at the deadline.
+    pub(super) async fn wait_for_reader(
+        &mut self,
+        waited: Duration,
+        deadline: Instant,
+        outside: &mut Outside<'_>,
+    ) -> Result<bool, SessionError> {
+        let link = self.name().to_string();
+        let whom = self.whom();
+        let mut peer = pin!(timeout_at(deadline, self.link.peer()));
+        let mut patience = pin!(sleep(PATIENCE));
+        let mut told = false;
+        loop {
+            tokio::select! {
+                peer = &mut peer => {
+                    peer.map_err(|_| SessionError::Nobody { link, waited })??;
+                    return Ok(true);
+                }
+                () = outside.ends() => return Ok(false),
+                () = &mut patience, if !told => {
+                    told = true;
+                    outside.tell(Event::Waiting { whom: whom.clone(), left: deadline - Instant::now() });
+                }
+            }
+        }
+    }
+
+    /// Who has to come to the link.
+    fn whom(&self) -> String {
+        let name = self.name();
+        match self.output.to.address {
+            Address::TcpIn(_) => format!("somebody to connect to {name}"),
+            Address::UdpIn(_) => format!("somebody to send to {name}"),
+            _ => format!("a reader to open {name}"),
+        }
+    }
+
+    /// Looks at the link, and tells of a port that came or went.
+    pub(super) fn look(&mut self, outside: &mut Outside<'_>) {
+        self.fullest = self.fullest.max(self.link.queued());
+        let (name, is_unplugged) = (self.link.name(), self.link.is_unplugged());
+        match (self.unplugged, is_unplugged) {
+            (false, true) => {
+                outside.notice(format!("{name} was unplugged: it is opened again when it is back"))
+            }
+            (true, false) => outside.notice(format!("{name} is back: the scene goes on where it is now")),
+            _ => {}
+        }
+        self.unplugged = is_unplugged;
+    }
+
+    /// What there is to say of the link, given what came of the output and what was said on it.
+    pub(super) fn report(&self, account: &Account, side: &Side) -> LinkReport {
+        let Account { made, tally, left, .. } = account;
+        let address = &self.output.to.address;
+        let baud = address.baud();
+        LinkReport {
+            to: self.output.to.to_string(),
+            name: self.name().to_string(),
+            made: made.packets,
+            sent: tally.packets,
+            packets: tally.packets,
+            bytes: tally.bytes,
+            dropped: tally.dropped,
+            queued: left.packets,
+            overload: self.output.overload.name().into(),
+            queue_bytes: self.fullest.map(|bytes| bytes as u64),
+            utilisation: baud.zip(tally.bytes_per_s()).map(|(baud, bytes)| bytes / bytes_per_second(baud)),
+            paced_baud: baud.filter(|_| matches!(address, Address::Pty { .. })),
+            gaps: tally.gaps.report(),
+            replies: tally.replies + side.replies(),
+            faults: made.by_fault(&self.output),
+            crc_errors: side.damaged(),
+            broken: self.broken(account),
+            ..LinkReport::default()
+        }
+    }
+
+    /// Why it takes nothing any more.
+    fn broken(&self, account: &Account) -> Option<String> {
+        match account.end {
+            _ if self.unplugged => Some("unplugged, and not back".into()),
+            _ if self.abandoned => Some("the reader left".into()),
+            end => end.map(|kind| kind.to_string()),
+        }
+    }
+}

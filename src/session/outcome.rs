@@ -1,0 +1,118 @@
+//! What comes of a run.
+
+use super::host::host;
+use super::pace::Speed;
+use super::watch::Watched;
+use crate::geometry::Attitude;
+use crate::report::{AttitudeReport, Host, Limit, LinkReport, PacingReport, Report, SensorReport};
+use crate::scene::{Destination, Plan};
+use crate::score::Figures;
+use crate::time::SimTime;
+use std::io::ErrorKind;
+
+/// What came of it.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// Scene time reached: the end, or where it was stopped.
+    pub played: SimTime,
+    /// How fast it was to go.
+    pub speed: Speed,
+    /// Whether it was stopped by the user.
+    pub interrupted: bool,
+    /// For how long the vehicle was held still before the scene, s.
+    pub rest_s: f64,
+    /// For how long scene time stood still for a link that was full or a controller in lockstep, s.
+    pub stretched_s: f64,
+    /// Whether the pacing thread had real-time priority.
+    pub realtime: bool,
+    /// Whether the process was locked in memory.
+    pub memory_locked: bool,
+    /// How the pacing thread waited; `None` where nothing was paced.
+    pub pacing: Option<PacingReport>,
+    /// The comparison, where one was asked for.
+    pub watched: Option<Watched>,
+    /// Each sensor's counts, rates and lateness.
+    pub sensors: Vec<SensorReport>,
+    /// Each link's counts.
+    pub links: Vec<LinkReport>,
+    /// The faults of outputs that acted: `mpu@pty drop from 2 s to 3 s`.
+    pub faults: Vec<String>,
+    /// What the other side estimated, judged.
+    pub attitude: Option<Figures>,
+    /// Every estimate that came back, with the scene time at which it held as far as that is known.
+    pub estimates: Vec<(SimTime, Attitude)>,
+    /// The command's exit code; `None` without a command, or when it was ended by us.
+    pub command: Option<i32>,
+}
+
+impl Outcome {
+    /// The report of a run of this plan, not judged yet; `estimator` is what estimated on the other side.
+    pub fn report(&self, plan: &Plan, estimator: &str) -> Report {
+        let Outcome { realtime, memory_locked, pacing, .. } = *self;
+        let known = |figures| AttitudeReport { estimator: estimator.into(), figures };
+        Report {
+            duration_s: self.played.seconds(),
+            rest_s: self.rest_s,
+            stretched_s: self.stretched_s,
+            speed: self.speed.report(),
+            faults: [plan.faults_until(self.played), self.faults.clone()].concat(),
+            host: Host { realtime, memory_locked, pacing, ..host() },
+            sensors: self.sensors.clone(),
+            links: self.links.clone(),
+            attitude: self.attitude.clone().map(known),
+            ..Report::new(&plan.name, plan.seed)
+        }
+    }
+
+    /// Judges its report: losses, links that broke, a command that failed, a run that never was, broken limits. `fed` is
+    /// whether a controller chose how many packets it gets.
+    ///
+    /// # Errors
+    /// The report cannot be written as JSON.
+    pub fn judge(&self, report: &mut Report, limits: &[Limit], fed: bool) -> serde_json::Result<()> {
+        let mut failed = lost(report, fed);
+        let broken = report.links.iter().filter(|link| !is_enough(link));
+        failed
+            .extend(broken.filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?))));
+        let code = self.command.filter(|code| *code != 0);
+        failed.extend(code.map(|code| format!("the command ended with exit code {code}")));
+        let nothing = report.links.iter().all(|link| link.packets == 0);
+        if self.command == Some(0) && nothing {
+            failed.push("the command ended before anything was sent: it must open the link, {} in its arguments or $RATETABLE_LINK".into());
+        } else if self.interrupted && nothing {
+            failed.push("it was ended before anything was sent".into());
+        }
+        let value = serde_json::to_value(&*report)?;
+        failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
+        report.ok = failed.is_empty();
+        report.failed = failed;
+        Ok(())
+    }
+
+    /// Why standard output did not take the packets that were for it, although somebody read them, as of a full disk.
+    pub fn unwritten(&self) -> Option<&str> {
+        let refused = |link: &&LinkReport| is_stdout(link) && !is_enough(link);
+        self.links.iter().filter(refused).find_map(|link| link.broken.as_deref())
+    }
+}
+
+/// The sensors that lost samples.
+fn lost(report: &Report, fed: bool) -> Vec<String> {
+    let excused = report.links.iter().any(is_enough)
+        && report.links.iter().all(|link| is_enough(link) || (link.dropped == 0 && link.queued == 0));
+    // A controller that asks for fewer packets than there are samples loses none.
+    let given_up = |sensor: &SensorReport| if fed { sensor.replaced } else { 0 };
+    let lost = report.sensors.iter().filter(|sensor| !excused && sensor.dropped > given_up(sensor));
+    lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect()
+}
+
+/// Whether a link ended with a reader of standard output that has enough, as `head` has: it loses nothing that anybody
+/// wants.
+fn is_enough(link: &LinkReport) -> bool {
+    let enough = ErrorKind::BrokenPipe.to_string();
+    is_stdout(link) && link.broken.as_ref().is_some_and(|broken| *broken == enough)
+}
+
+fn is_stdout(link: &LinkReport) -> bool {
+    link.to.parse::<Destination>().is_ok_and(|to| to.address.is_stdout())
+}

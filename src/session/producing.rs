@@ -1,0 +1,63 @@
+//! The producer thread, as the control side holds it.
+
+use super::feed::Feed;
+use super::pacer::Pacer;
+use super::producer::{self, Task};
+use super::{Item, Job, Shared};
+use crate::clock::Clock;
+use crate::wire::dialogue::Peer;
+use rtrb::Producer;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+/// Between two looks at whether it has ended.
+const LOOK: Duration = Duration::from_micros(100);
+
+/// The thread, or the ring that it is to fill once it is started.
+pub(super) enum Producing {
+    NotYet(Producer<Item>),
+    Started(JoinHandle<Vec<Feed>>),
+}
+
+impl Producing {
+    /// Starts it with what is known of the other side of each output, if it is not started yet.
+    pub(super) fn start(
+        self,
+        job: &Job,
+        shared: &Arc<Shared>,
+        peers: impl Iterator<Item = Peer>,
+    ) -> Producing {
+        let Producing::NotYet(ring) = self else { return self };
+        let outputs = job.outputs.iter().zip(peers).enumerate();
+        let feeds = outputs.map(|(i, (output, peer))| Feed::new(&job.plan, i, output, peer)).collect();
+        let (plan, end, rest, shared) = (job.plan.clone(), job.end, job.rest, shared.clone());
+        Producing::Started(thread::spawn(move || {
+            producer::produce(Task { plan: &plan, end, rest }, feeds, ring, &shared)
+        }))
+    }
+
+    /// Ends with it before anything was sent, once everything is told to stop and nobody takes from the ring.
+    pub(super) fn abandon(self) {
+        if let Producing::Started(thread) = self {
+            let _ = thread.join();
+        }
+    }
+
+    /// Stops it and joins it, emptying the ring into the count of what was left while it ends.
+    pub(super) fn collect<C: Clock>(self, pacer: &mut Pacer<C>) -> Vec<Feed> {
+        let Producing::Started(thread) = self else { return Vec::new() };
+        pacer.pace.shared.stop.store(true, Ordering::Relaxed);
+        loop {
+            // Asked before emptying: what the producer pushed last is then in the ring.
+            let over = thread.is_finished();
+            pacer.give_up();
+            if over {
+                break;
+            }
+            thread::sleep(LOOK);
+        }
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    }
+}

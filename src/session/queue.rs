@@ -1,0 +1,63 @@
+//! Packets that their link did not take when they were due.
+
+use super::pace::AT_ONCE;
+use crate::scene::Overload;
+use crate::wire::Packet;
+use std::collections::VecDeque;
+
+/// Packets that `drop-oldest` keeps for a link: 64 ms of a sensor at 1 kHz. What the system's own buffers hold comes
+/// on top, and is older.
+pub(super) const BACKLOG: usize = 64;
+
+/// A packet that is due, with its due time on the pacing thread's clock (or [`AT_ONCE`]).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Due {
+    pub packet: Packet,
+    pub due: i64,
+}
+
+impl Due {
+    /// By how much a write at `now` is late, ns.
+    pub(super) fn late(&self, now: i64) -> i64 {
+        if self.due == AT_ONCE { 0 } else { now - self.due }
+    }
+}
+
+/// Those of one link, oldest first.
+#[derive(Debug)]
+pub(super) struct Queue {
+    /// As large as it gets from the start.
+    waiting: VecDeque<Due>,
+}
+
+impl Queue {
+    /// With room for as many as this policy keeps.
+    pub(super) fn new(policy: Overload) -> Queue {
+        let room = if policy == Overload::DropOldest { BACKLOG } else { 1 };
+        Queue { waiting: VecDeque::with_capacity(room) }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// The one that has waited longest.
+    pub(super) fn oldest(&self) -> Option<Due> {
+        self.waiting.front().copied()
+    }
+
+    /// Takes the one that has waited longest.
+    pub(super) fn pop(&mut self) -> Option<Due> {
+        self.waiting.pop_front()
+    }
+
+    /// Takes the one that has waited longest, if there is no room for another.
+    pub(super) fn make_room(&mut self) -> Option<Due> {
+        if self.waiting.len() == BACKLOG { self.waiting.pop_front() } else { None }
+    }
+
+    /// Lets one wait.
+    pub(super) fn push(&mut self, it: Due) {
+        self.waiting.push_back(it);
+    }
+}
