@@ -25,7 +25,9 @@ use crate::earth::{Day, Place, STANDARD_GRAVITY, default_field};
 use crate::geometry::{Attitude, Axes, Body, Vector};
 use crate::motion::Truth;
 use crate::schedule::{Schedule, Ticks};
-use crate::sensor::{ByKind, Fix, Measured, Measurement, Position, Reading, SensorKind, SensorPlan, Shape};
+use crate::sensor::{
+    ByKind, Fix, Kinds, Measured, Measurement, Position, Reading, SensorKind, SensorPlan, Shape,
+};
 use crate::time::{NANOS, SimTime};
 use dialogue::Peer;
 
@@ -355,7 +357,7 @@ fn pressure(newest: &ByKind<Option<Reading>>, kind: SensorKind) -> Option<f64> {
 #[derive(Debug, Default)]
 struct Newest {
     values: ByKind<Option<Reading>>,
-    fresh: u8,
+    fresh: Kinds,
     replaced: ByKind<u32>,
 }
 
@@ -363,25 +365,26 @@ impl Newest {
     fn take_in(&mut self, readings: &[Reading]) {
         for reading in readings {
             let i = reading.kind as usize;
-            if self.fresh >> i & 1 == 1 {
+            if self.fresh.contains(reading.kind) {
                 self.replaced[i] = self.replaced[i].saturating_add(1);
             }
-            self.fresh |= 1 << i;
+            self.fresh.insert(reading.kind);
             self.values[i] = Some(*reading);
         }
     }
 
     fn waiting(&self) -> ByKind<u64> {
-        std::array::from_fn(|i| u64::from(self.fresh >> i & 1) + u64::from(self.replaced[i]))
+        SensorKind::ALL
+            .map(|kind| u64::from(self.fresh.contains(kind)) + u64::from(self.replaced[kind as usize]))
     }
 
     /// A packet of these bytes that carries the fresh samples among `kinds`.
-    fn packet(&mut self, due: SimTime, kinds: u8, bytes: &[u8]) -> Packet {
+    fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
         let mut packet = Packet::new(due, self.fresh & kinds, bytes);
-        for i in (0..SensorKind::COUNT).filter(|i| kinds >> i & 1 == 1) {
-            packet.replaced[i] = std::mem::take(&mut self.replaced[i]);
+        for kind in kinds.iter() {
+            packet.replaced[kind as usize] = std::mem::take(&mut self.replaced[kind as usize]);
         }
-        self.fresh &= !kinds;
+        self.fresh.remove(kinds);
         packet
     }
 }

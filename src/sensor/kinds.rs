@@ -49,6 +49,11 @@ impl Kinds {
         self.0 == 0
     }
 
+    /// How many there are.
+    pub const fn len(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
     /// Adds a kind.
     pub const fn insert(&mut self, kind: SensorKind) {
         self.0 |= 1 << kind as u8;
@@ -62,6 +67,12 @@ impl Kinds {
     /// The kinds, in order.
     pub fn iter(self) -> impl Iterator<Item = SensorKind> {
         SensorKind::ALL.into_iter().filter(move |kind| self.contains(*kind))
+    }
+}
+
+impl From<SensorKind> for Kinds {
+    fn from(kind: SensorKind) -> Kinds {
+        Kinds::of(&[kind])
     }
 }
 

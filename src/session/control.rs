@@ -16,6 +16,7 @@ use super::pace::Pace;
 use super::pacer::Pacer;
 use super::pacing::{LivePacer, Pacing};
 use super::producing::Producing;
+use super::shared::TICK;
 use super::side::Side;
 use super::talk::Talk;
 use super::watch::Watching;
@@ -36,8 +37,6 @@ const RING: usize = 8192;
 const PROGRESS: Duration = Duration::from_millis(100);
 /// Between two looks at the links.
 const LOOK: Duration = Duration::from_millis(20);
-/// Between two looks at what is due by itself in a conversation.
-pub(super) const TICK: Duration = Duration::from_millis(10);
 /// At full speed nothing moves without a reader; one who is away for so long has left for good.
 const ABSENCE: Duration = Duration::from_secs(5);
 /// For answers that are still on their way when the last packet is out.

@@ -79,7 +79,7 @@ async fn listen_to_ground(mut receiver: Receiver, talk: Rc<RefCell<Talk>>) {
         match receiver.recv(&mut buffer).await {
             Ok(1..) => talk.borrow_mut().pass_down(&buffer),
             // Of a socket: a port unreachable, said of a datagram before.
-            Ok(0) | Err(_) => tokio::time::sleep(super::control::TICK).await,
+            Ok(0) | Err(_) => tokio::time::sleep(super::shared::TICK).await,
         }
     }
 }

@@ -15,6 +15,7 @@ use super::tally::{SensorTally, Tally};
 use crate::clock::Clock;
 use crate::link::{Sender, Sent};
 use crate::scene::Overload;
+use crate::sensor::Kinds;
 use crate::wire::Packet;
 use std::io::ErrorKind;
 use std::sync::atomic::Ordering;
@@ -76,7 +77,7 @@ impl Lane {
     }
 
     /// Whether a packet that carries these kinds may go, or has to wait for the other side.
-    pub(super) fn turn(&mut self, carries: u8, clock: &impl Clock) -> Turn {
+    pub(super) fn turn(&mut self, carries: Kinds, clock: &impl Clock) -> Turn {
         match &mut self.step {
             Some(step) if self.end.is_none() => step.turn(carries, clock),
             _ => Turn::Goes,
@@ -246,7 +247,7 @@ impl Lane {
         for packet in farewell.iter().filter(|_| self.end.is_none()) {
             let sent = loop {
                 match self.sender.send(packet.bytes()) {
-                    Sent::Full if Instant::now() < deadline => tokio::time::sleep(super::control::TICK).await,
+                    Sent::Full if Instant::now() < deadline => tokio::time::sleep(super::shared::TICK).await,
                     sent => break sent,
                 }
             };

@@ -19,7 +19,7 @@ impl Left {
         }
         self.packets += 1;
         for (i, samples) in self.samples.iter_mut().enumerate() {
-            *samples += u64::from(packet.carries >> i & 1) + u64::from(packet.replaced[i]);
+            *samples += packet.samples(i);
         }
     }
 }

@@ -7,6 +7,7 @@ use super::queue::Due;
 use super::replies::Replied;
 use super::step::Turn;
 use crate::clock::Clock;
+use crate::sensor::Kinds;
 use crate::time::SimTime;
 use rtrb::Consumer;
 use std::sync::atomic::Ordering;
@@ -37,7 +38,7 @@ pub(super) struct Pacer<C> {
 #[derive(Clone, Copy, Debug)]
 struct Next {
     lane: usize,
-    carries: u8,
+    carries: Kinds,
     t: SimTime,
 }
 

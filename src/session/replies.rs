@@ -4,6 +4,7 @@
 //! and they reach it over a ring a link, so that it neither waits nor locks.
 
 use crate::link::{Sender, Sent};
+use crate::sensor::Kinds;
 use crate::time::SimTime;
 use crate::wire::{MAX_PACKET, Packet};
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -31,7 +32,7 @@ impl Way {
                 *count += u64::from(sent);
                 sent
             }
-            Way::Ring(ring, _) => ring.push(Packet::new(SimTime::ZERO, 0, bytes)).is_ok(),
+            Way::Ring(ring, _) => ring.push(Packet::new(SimTime::ZERO, Kinds::NONE, bytes)).is_ok(),
         }
     }
 

@@ -3,6 +3,10 @@
 use crate::time::SimTime;
 use crate::wire::Packet;
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
+use std::time::Duration;
+
+/// Between two looks at what is due by itself in a conversation.
+pub(super) const TICK: Duration = Duration::from_millis(10);
 
 /// A packet on its way to one of the outputs.
 #[derive(Clone, Copy, Debug)]

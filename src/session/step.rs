@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use crate::scene::Output;
-use crate::sensor::{ByKind, SensorKind};
+use crate::sensor::{Kinds, SensorKind};
 use crate::wire::{Controller, Packet, Protocol};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,12 +13,7 @@ const STRAGGLERS: i64 = 50_000_000;
 /// An answer that takes longer, ns, is not waited for.
 pub(super) const PATIENCE: i64 = 3_000_000_000;
 /// The kinds whose samples are answered.
-const ANSWERED: ByKind<bool> = {
-    let mut answered = [false; SensorKind::COUNT];
-    answered[SensorKind::Gyro as usize] = true;
-    answered[SensorKind::Accel as usize] = true;
-    answered
-};
+const ANSWERED: Kinds = Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]);
 
 /// Whether the other side of an output answers each packet of samples.
 pub(super) fn in_lockstep(output: &Output) -> bool {
@@ -88,7 +83,7 @@ impl Step {
     }
 
     /// Whether a packet that carries these kinds may go now.
-    pub(super) fn turn(&mut self, carries: u8, clock: &impl Clock) -> Turn {
+    pub(super) fn turn(&mut self, carries: Kinds, clock: &impl Clock) -> Turn {
         if !is_answered(carries) {
             return Turn::Goes;
         }
@@ -120,6 +115,6 @@ impl Mode {
     }
 }
 
-fn is_answered(carries: u8) -> bool {
-    ANSWERED.iter().enumerate().any(|(kind, answered)| *answered && carries >> kind & 1 == 1)
+fn is_answered(carries: Kinds) -> bool {
+    !(ANSWERED & carries).is_empty()
 }

@@ -93,18 +93,17 @@ impl Tally {
         (self.last, self.last_bytes) = (now, packet.bytes().len() as u64);
         self.packets += 1;
         self.bytes += self.last_bytes;
-        let sensors = self.sensors.iter_mut().enumerate();
-        for (_, sensor) in sensors.filter(|(i, _)| packet.carries >> i & 1 == 1) {
-            sensor.sent(now, late, write);
+        for kind in packet.carries.iter() {
+            self.sensors[kind as usize].sent(now, late, write);
         }
     }
 
     /// Counts a packet as dropped; how many samples that is.
     pub(super) fn dropped(&mut self, packet: &Packet) -> u64 {
-        let sensors = self.sensors.iter_mut().enumerate();
-        let lost =
-            sensors.filter(|(i, _)| packet.carries >> i & 1 == 1).map(|(_, sensor)| sensor.dropped += 1);
-        let samples = lost.count() as u64;
+        for kind in packet.carries.iter() {
+            self.sensors[kind as usize].dropped += 1;
+        }
+        let samples = packet.carries.len() as u64;
         self.dropped += 1;
         self.gaps.lost(samples);
         samples

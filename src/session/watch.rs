@@ -103,7 +103,7 @@ impl Watching {
 
     /// Records a packet's samples.
     pub(super) fn packet(&mut self, packet: &Packet, due: i64, sent: Option<i64>) {
-        let carried = |kind: &&SensorKind| packet.carries >> **kind as usize & 1 == 1;
+        let carried = |kind: &&SensorKind| packet.carries.contains(**kind);
         for kind in SensorKind::ALL.iter().filter(carried) {
             self.record(Record::Sample { kind: *kind, t: packet.due, due, sent });
         }

@@ -190,7 +190,7 @@ impl Faulty {
         match self.acts.kind {
             FaultKind::Drop => {
                 for (i, taken) in taken.iter_mut().enumerate() {
-                    *taken += u64::from(packet.carries >> i & 1) + u64::from(packet.replaced[i]);
+                    *taken += packet.samples(i);
                 }
                 out.push(Packet::nothing(due, 0));
             }
@@ -199,8 +199,8 @@ impl Faulty {
                 out.push(packet);
             }
             FaultKind::Duplicate => {
-                for (i, added) in added.iter_mut().enumerate() {
-                    *added += u64::from(packet.carries >> i & 1);
+                for kind in packet.carries.iter() {
+                    added[kind as usize] += 1;
                 }
                 out.extend([packet, Packet { replaced: ByKind::default(), ..packet }]);
             }

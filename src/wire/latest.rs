@@ -8,11 +8,12 @@ use super::{Newest, Packet, Setup};
 use crate::earth::SEA_LEVEL_PRESSURE;
 use crate::geometry::{Body, Vector};
 use crate::schedule::Ticks;
-use crate::sensor::{ByKind, Reading, SensorKind};
+use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
 
-/// Gyro, accel, mag and baro.
-const CARRIED: u8 = 0b1111;
+/// What the packets carry.
+pub(super) const CARRIED: Kinds =
+    Kinds::of(&[SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag, SensorKind::Baro]);
 
 pub(super) struct Latest {
     newest: Newest,

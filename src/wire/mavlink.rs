@@ -13,7 +13,7 @@ pub use extra::{Extra, Extras};
 
 use super::{Encoder, EverySecond, Newest, Now, Packet, Protocol, Setup, body, pressure};
 use crate::earth::pressure_altitude;
-use crate::sensor::{ByKind, Claims, SensorKind};
+use crate::sensor::{ByKind, Claims, Kinds, SensorKind};
 use crate::time::SimTime;
 use extra::Sender;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
@@ -41,7 +41,13 @@ const MASKS: [(SensorKind, u32); 5] = [
     (SensorKind::Baro, hil_sensor::PRESSURE),
     (SensorKind::Airspeed, hil_sensor::DIFF_PRESSURE),
 ];
-const KINDS: u8 = 0b10_1111;
+const KINDS: Kinds = Kinds::of(&[
+    SensorKind::Gyro,
+    SensorKind::Accel,
+    SensorKind::Mag,
+    SensorKind::Baro,
+    SensorKind::Airspeed,
+]);
 
 pub(super) struct Mavlink {
     version: Version,
@@ -116,7 +122,7 @@ impl Mavlink {
         };
         for message in [Message::Heartbeat(alive), Message::SystemTime(clock)] {
             let bytes = self.bytes(&message, &mut buffer);
-            out.push(Packet::new(t, 0, bytes));
+            out.push(Packet::new(t, Kinds::NONE, bytes));
         }
     }
 
@@ -127,7 +133,7 @@ impl Mavlink {
     fn hil_sensor(&self, t: SimTime) -> Message {
         let readings = self.readings();
         let value = |kind, unit| readings.over(kind, unit).map(|x| x as f32);
-        let fresh = MASKS.iter().filter(|(kind, _)| self.newest.fresh >> *kind as u8 & 1 == 1);
+        let fresh = MASKS.iter().filter(|(kind, _)| self.newest.fresh.contains(*kind));
         let fresh = fresh.map(|(_, mask)| *mask);
         let temperature = readings.temperature();
         let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
@@ -149,13 +155,13 @@ impl Mavlink {
     }
 
     fn extras(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
-        let ticked = now.readings.iter().fold(0, |kinds, reading| kinds | 1 << reading.kind as u8);
+        let ticked = now.readings.iter().map(|reading| reading.kind).collect();
         let mut extras = std::mem::take(&mut self.extras);
         for sender in &mut extras {
             if sender.is_due(now.t, ticked) {
                 let message = sender.message(now.truth, &self.readings());
                 let mut buffer = [0; mavlink::MAX_LEN];
-                out.push(Packet::new(now.t, 0, self.bytes(&message, &mut buffer)));
+                out.push(Packet::new(now.t, Kinds::NONE, self.bytes(&message, &mut buffer)));
             }
         }
         self.extras = extras;
@@ -199,7 +205,7 @@ impl Encoder for Mavlink {
             let message = gps::message(t, &fix, claims);
             let mut buffer = [0; mavlink::MAX_LEN];
             let bytes = self.bytes(&message, &mut buffer);
-            out.push(self.newest.packet(t, 1 << SensorKind::Gps as u8, bytes));
+            out.push(self.newest.packet(t, SensorKind::Gps.into(), bytes));
         }
         self.extras(now, out);
     }

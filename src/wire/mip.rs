@@ -9,7 +9,7 @@ use super::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
 use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::earth::STANDARD_GRAVITY;
 use crate::motion::Truth;
-use crate::sensor::{ByKind, Reading, SensorKind};
+use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::SimTime;
 use ratetable_protocols::mip::{self, imu};
 
@@ -44,7 +44,7 @@ impl Encoder for Mip {
         }
         let mut buffer = [0; mip::MAX_LEN];
         let len = write(&still, &mut buffer);
-        out.push(Packet::new(t, 0, &buffer[..len]));
+        out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
     }
 
     fn waiting(&self) -> ByKind<u64> {

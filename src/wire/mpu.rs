@@ -5,7 +5,7 @@
 
 use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup, body};
 use crate::earth::STANDARD_GRAVITY;
-use crate::sensor::{ByKind, Mount, REFERENCE_TEMPERATURE, SensorKind, SensorPlan, lsb};
+use crate::sensor::{ByKind, Kinds, Mount, REFERENCE_TEMPERATURE, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
 use ratetable_protocols::mpu::registers::{self, Chip};
 use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
@@ -14,7 +14,7 @@ use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
 const ASA: u8 = 128;
 /// 16-bit output, continuous measurement at 100 Hz.
 const CNTL1: u8 = 0x16;
-const IMU: u8 = 1 << SensorKind::Gyro as u8 | 1 << SensorKind::Accel as u8;
+const IMU: Kinds = Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]);
 
 pub(super) struct Mpu {
     seq: u8,
@@ -63,7 +63,7 @@ impl Mpu {
         }
     }
 
-    fn push(&mut self, t: SimTime, kinds: u8, packet: &mpu::Packet, out: &mut Vec<Packet>) {
+    fn push(&mut self, t: SimTime, kinds: Kinds, packet: &mpu::Packet, out: &mut Vec<Packet>) {
         let mut buffer = [0; mpu::MAX_LEN];
         let t_us = (t.0 / 1000) as u32;
         // MAX_LEN holds every packet.
@@ -128,7 +128,7 @@ impl Encoder for Mpu {
         let Now { t, readings, .. } = *now;
         for second in self.seconds.due(t) {
             let config = mpu::Packet::Config(self.config);
-            self.push(second, 0, &config, out);
+            self.push(second, Kinds::NONE, &config, out);
         }
         self.newest.take_in(readings);
         if self.burst.is_some_and(|carrier| readings.iter().any(|reading| reading.kind == carrier)) {
@@ -137,7 +137,7 @@ impl Encoder for Mpu {
         for kind in readings.iter().map(|reading| reading.kind) {
             let alone = self.alone(kind).filter(|_| self.burst.is_none() || kind == SensorKind::Mag);
             if let Some(packet) = alone {
-                self.push(t, 1 << kind as u8, &packet, out);
+                self.push(t, kind.into(), &packet, out);
             }
         }
     }

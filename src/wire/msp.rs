@@ -9,7 +9,7 @@ use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
 use crate::geometry::{Body, Nav, Vector};
 use crate::motion::Truth;
-use crate::sensor::{ByKind, Reading, SensorKind};
+use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
 use ratetable_protocols::msp::{self, Message, simulator};
 
@@ -75,7 +75,7 @@ impl Encoder for Msp {
         let mag = if self.has_mag { field + to_true_north(truth) } else { Vector::ZERO };
         let mut buffer = [0; msp::MAX_LEN];
         let len = frame([gyro, accel, mag], truth.field.length(), pascals(self.latest.newest()), &mut buffer);
-        out.push(Packet::new(t, 0, &buffer[..len]));
+        out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
     }
 
     fn waiting(&self) -> ByKind<u64> {

@@ -1,6 +1,6 @@
 //! One packet as it is handed from thread to thread.
 
-use crate::sensor::ByKind;
+use crate::sensor::{ByKind, Kinds, SensorKind};
 use crate::time::SimTime;
 
 /// The longest packet of any protocol, bytes: a signed MAVLink 2 message, such as a ground station may send.
@@ -12,8 +12,8 @@ pub const MAX_PACKET: usize = 280;
 pub struct Packet {
     /// When it is due.
     pub due: SimTime,
-    /// Bit i is set when it carries a new sample of the sensor of kind i.
-    pub carries: u8,
+    /// The kinds of which it carries a new sample.
+    pub carries: Kinds,
     /// Samples of each kind that a newer one replaced before any packet carried them.
     pub replaced: ByKind<u32>,
     /// How many of its bytes go out at once, the others a little later; 0 = all of them. Of a packet without bytes: how
@@ -25,7 +25,7 @@ pub struct Packet {
 
 impl Packet {
     /// A packet of these bytes, due then; longer ones are cut at [`MAX_PACKET`], which no protocol here reaches.
-    pub fn new(due: SimTime, carries: u8, bytes: &[u8]) -> Packet {
+    pub fn new(due: SimTime, carries: Kinds, bytes: &[u8]) -> Packet {
         debug_assert!(bytes.len() <= MAX_PACKET, "{} bytes", bytes.len());
         let len = bytes.len().min(MAX_PACKET);
         let mut packet = Packet {
@@ -42,7 +42,12 @@ impl Packet {
 
     /// No packet, but a time at which something is due: `piece` bytes of the packet before that are held back, or 0.
     pub fn nothing(due: SimTime, piece: u16) -> Packet {
-        Packet { piece, ..Packet::new(due, 0, &[]) }
+        Packet { piece, ..Packet::new(due, Kinds::NONE, &[]) }
+    }
+
+    /// Samples of a kind that end with it: the one that it carries, and those that were replaced before it.
+    pub fn samples(&self, kind: usize) -> u64 {
+        u64::from(self.carries.contains(SensorKind::ALL[kind])) + u64::from(self.replaced[kind])
     }
 
     /// Whether it is no packet.

@@ -10,6 +10,8 @@ use proptest::prelude::*;
 use ratetable_protocols::mavlink::{self, Message, hil_sensor};
 use ratetable_protocols::mpu::{self, config, registers};
 
+const GYRO_ACCEL: Kinds = Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]);
+
 pub(super) fn plan(text: &str) -> Plan {
     Plan::parse(text, "s", "s", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -101,14 +103,14 @@ fn mpu_packs_gyro_and_accel_together_when_they_tick_alike() {
     for (packet, seen) in driven(&packets) {
         match seen {
             mpu::Packet::Imu(imu) => {
-                assert_eq!((packet.due, packet.carries), (gyro[imus].0, 0b011));
+                assert_eq!((packet.due, packet.carries), (gyro[imus].0, GYRO_ACCEL));
                 counts_match(imu.gyro, &gyro[imus].1, GYRO_COUNT);
                 counts_match(imu.accel, &accel[imus].1, ACCEL_COUNT);
                 assert_eq!(imu.temperature, 1335, "(25 °C − 21 °C)·333.87");
                 imus += 1;
             }
             mpu::Packet::Mag(field) => {
-                assert_eq!((packet.due, packet.carries), (mag[mags].0, 0b100));
+                assert_eq!((packet.due, packet.carries), (mag[mags].0, SensorKind::Mag.into()));
                 // The AK8963 inside sees y, x and −z of the MPU.
                 let [x, y, z] = field.field;
                 counts_match([y, x, -z], &mag[mags].1, 0.15);
@@ -117,7 +119,7 @@ fn mpu_packs_gyro_and_accel_together_when_they_tick_alike() {
             }
             mpu::Packet::Config(config) => {
                 configs.push(packet.due.0 / NANOS);
-                assert_eq!(packet.carries, 0);
+                assert_eq!(packet.carries, Kinds::NONE);
                 let expected = config::Repr {
                     who_am_i: registers::WHO_MPU9250,
                     smplrt_div: 4,
@@ -180,12 +182,12 @@ fn mpu_sends_gyro_and_accel_apart_when_their_rates_differ_or_it_is_asked_to() {
         for (packet, seen) in driven(&packets) {
             match seen {
                 mpu::Packet::Gyro(seen) => {
-                    assert_eq!((packet.due, packet.carries), (gyro[gyros].0, 0b001));
+                    assert_eq!((packet.due, packet.carries), (gyro[gyros].0, SensorKind::Gyro.into()));
                     counts_match(seen.gyro, &gyro[gyros].1, GYRO_COUNT);
                     gyros += 1;
                 }
                 mpu::Packet::Accel(seen) => {
-                    assert_eq!((packet.due, packet.carries), (accel[accels].0, 0b010));
+                    assert_eq!((packet.due, packet.carries), (accel[accels].0, SensorKind::Accel.into()));
                     counts_match(seen.accel, &accel[accels].1, ACCEL_COUNT);
                     accels += 1;
                 }
@@ -217,7 +219,9 @@ fn a_burst_goes_out_at_the_faster_rate_and_holds_the_slower_sensor() {
             let (gyro, accel) = (newest(SensorKind::Gyro, packet.due), newest(SensorKind::Accel, packet.due));
             counts_match(imu.gyro, &gyro.1, GYRO_COUNT);
             counts_match(imu.accel, &accel.1, ACCEL_COUNT);
-            let fresh = u8::from(gyro.0 == packet.due) | u8::from(accel.0 == packet.due) << 1;
+            let fresh = [(SensorKind::Gyro, gyro.0), (SensorKind::Accel, accel.0)];
+            let fresh: Kinds =
+                fresh.into_iter().filter(|(_, t)| *t == packet.due).map(|(kind, _)| kind).collect();
             assert_eq!(packet.carries, fresh, "a held sample is not carried a second time");
             imus += 1;
         }
@@ -338,7 +342,7 @@ fn mavlink_carries_the_newest_of_each_sensor_with_a_bit_for_each_that_ticked() {
                 .filter(|(t, reading)| reading.kind == kind && *t > last && *t <= packet.due)
                 .count();
             mask |= if ticks > 0 { bits } else { 0 };
-            assert_eq!(packet.carries >> kind as u8 & 1 == 1, ticks > 0);
+            assert_eq!(packet.carries.contains(kind), ticks > 0);
             assert_eq!(packet.replaced[kind as usize] as usize, ticks.saturating_sub(1));
             replaced[kind as usize] += packet.replaced[kind as usize];
             let expected =
@@ -422,10 +426,7 @@ fn text_reads_back_to_the_same_bits_in_the_scenes_axes() {
             };
             assert!(["x", "y", "z"].iter().all(|key| object[*key].is_number()));
             assert_eq!(["\"x\":", "\"y\":", "\"z\":"].map(|key| number(key).to_bits()), bits);
-            assert_eq!(
-                (csv.due, csv.carries, json.carries),
-                (*t, 1 << reading.kind as u8, 1 << reading.kind as u8)
-            );
+            assert_eq!((csv.due, csv.carries, json.carries), (*t, reading.kind.into(), reading.kind.into()));
         }
     }
 }
@@ -499,7 +500,7 @@ proptest! {
             encoder.encode(&Now { t: due.t, truth: &at_rest(due.t), readings: &readings }, &mut packets);
             for packet in &packets[seen..] {
                 for (kind, (carried, replaced)) in carried.iter_mut().zip(&mut replaced).enumerate() {
-                    *carried += u64::from(packet.carries >> kind & 1);
+                    *carried += u64::from(packet.carries.contains(SensorKind::ALL[kind]));
                     *replaced += u64::from(packet.replaced[kind]);
                 }
             }
@@ -558,7 +559,7 @@ fn mavlink_has_the_pressure_with_its_bits_where_the_barometer_ticked() {
             let told = if degrees == 31.0 { hil_sensor::TEMPERATURE } else { 0 };
             let expected = if ticks { 0x1A00 } else { told };
             assert_eq!(seen.fields_updated & 0x1E00, expected, "{}", packet.due);
-            assert_eq!(packet.carries >> SensorKind::Baro as u8 & 1 == 1, ticks);
+            assert_eq!(packet.carries.contains(SensorKind::Baro), ticks);
             ticked += u32::from(ticks);
         }
         assert_eq!(ticked, 75);

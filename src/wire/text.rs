@@ -2,7 +2,7 @@
 
 use super::{Encoder, Now, Packet, Setup};
 use crate::geometry::Axes;
-use crate::sensor::{Fix, Measured, Measurement, Position, Reading, SensorKind};
+use crate::sensor::{Fix, Kinds, Measured, Measurement, Position, Reading, SensorKind};
 use crate::time::SimTime;
 use std::io::Write;
 
@@ -81,11 +81,11 @@ impl Encoder for Text {
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
         let Now { t, readings, .. } = *now;
         if let Some(header) = self.header.take() {
-            out.push(Packet::new(t, 0, header.as_bytes()));
+            out.push(Packet::new(t, Kinds::NONE, header.as_bytes()));
         }
         for reading in readings {
             self.write(t, reading);
-            out.push(Packet::new(t, 1 << reading.kind as u8, &self.line));
+            out.push(Packet::new(t, reading.kind.into(), &self.line));
         }
     }
 }

@@ -10,7 +10,7 @@ use super::mavlink::MICROTESLA_A_GAUSS;
 use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::geometry::{Euler, Vector};
 use crate::motion::Truth;
-use crate::sensor::{ByKind, REFERENCE_TEMPERATURE, Reading, SensorKind};
+use crate::sensor::{ByKind, Kinds, REFERENCE_TEMPERATURE, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
 use ratetable_protocols::vectornav::{self, MAX_LEN, ahrs, imu};
 
@@ -47,7 +47,7 @@ impl Encoder for Vectornav {
         if AHRS.tick(self.next) <= now.t {
             self.next = AHRS.ticks_before(SimTime::ZERO, SimTime(now.t.0 + 1));
             let len = encoded(&vectornav::Packet::Ahrs(attitude(now.truth)), &mut buffer);
-            out.push(Packet::new(now.t, 0, &buffer[..len]));
+            out.push(Packet::new(now.t, Kinds::NONE, &buffer[..len]));
         }
     }
 
@@ -62,7 +62,7 @@ impl Encoder for Vectornav {
         }
         let mut buffer = [0; MAX_LEN];
         let len = write(t, &still, &mut buffer);
-        out.push(Packet::new(t, 0, &buffer[..len]));
+        out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
     }
 
     fn waiting(&self) -> ByKind<u64> {

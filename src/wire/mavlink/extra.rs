@@ -7,7 +7,7 @@
 use super::{MICROTESLA_A_GAUSS, Readings};
 use crate::earth::STANDARD_GRAVITY;
 use crate::motion::Truth;
-use crate::sensor::SensorKind;
+use crate::sensor::{Kinds, SensorKind};
 use crate::time::{NANOS, SimTime};
 use ratetable_protocols::mavlink::{
     Message, attitude_quaternion, highres_imu, hil_state_quaternion, raw_imu, scaled_imu2,
@@ -81,16 +81,16 @@ pub(super) struct Sender {
     pub extra: Extra,
     next: SimTime,
     /// Bit i: the sensor of kind i ticked since the message before.
-    fresh: u8,
+    fresh: Kinds,
 }
 
 impl Sender {
     pub(super) fn new(extra: Extra) -> Sender {
-        Sender { extra, next: SimTime::ZERO, fresh: 0 }
+        Sender { extra, next: SimTime::ZERO, fresh: Kinds::NONE }
     }
 
     /// Takes note of which sensors ticked, and says whether it is its turn.
-    pub(super) fn is_due(&mut self, t: SimTime, ticked: u8) -> bool {
+    pub(super) fn is_due(&mut self, t: SimTime, ticked: Kinds) -> bool {
         let every = NANOS / RATE_HZ;
         self.fresh |= ticked;
         let due = t >= self.next;
@@ -155,9 +155,13 @@ impl Sender {
 }
 
 /// The bits of HIGHRES_IMU's `fields_updated`.
-fn fields(fresh: u8, temperature: bool) -> u16 {
-    let masks = [highres_imu::GYRO, highres_imu::ACCEL, highres_imu::MAG];
-    let ticked = (0..masks.len()).filter(|i| fresh >> i & 1 == 1).map(|i| masks[i]);
+fn fields(fresh: Kinds, temperature: bool) -> u16 {
+    let masks = [
+        (SensorKind::Gyro, highres_imu::GYRO),
+        (SensorKind::Accel, highres_imu::ACCEL),
+        (SensorKind::Mag, highres_imu::MAG),
+    ];
+    let ticked = masks.into_iter().filter(|(kind, _)| fresh.contains(*kind)).map(|(_, mask)| mask);
     ticked.chain(temperature.then_some(TEMPERATURE)).fold(0, |all, bits| all | bits)
 }
 
