@@ -4,7 +4,7 @@ use super::{Event, Heard, Job, ListenError, Meter, Progress};
 use crate::clock::{Clock, WallClock};
 use crate::interrupt::Interrupt;
 use crate::link::{Address, Link, LinkError, Receiver, Sender};
-use crate::wire::{Protocol, samples};
+use crate::wire::Protocol;
 use bytes::BytesMut;
 use std::time::Duration;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
@@ -122,7 +122,7 @@ impl Ear<'_> {
     fn greet(&mut self, seq: u8) {
         if let Some(sender) = &mut self.greeted {
             // One that does not arrive is followed by the next.
-            let _ = sender.send(&samples::greeting(self.job.protocol, seq));
+            let _ = sender.send(&self.job.protocol.greeting(seq));
         }
     }
 

@@ -6,7 +6,7 @@ use super::step::{Step, in_lockstep};
 use crate::link::Sender;
 use crate::scene::Output;
 use crate::score::Timed;
-use crate::wire::dialogue::{self, Dialogue, Peer, Stage};
+use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -28,7 +28,7 @@ impl Side {
     /// Of an output, with the way out to its link.
     pub(super) fn new(output: &Output, sender: Sender) -> Side {
         Side {
-            dialogue: dialogue::dialogue(output.to.protocol, output.wire.controller),
+            dialogue: output.to.protocol.dialogue(output.wire.controller),
             estimates: Vec::new(),
             bytes: 0,
             messages: 0,

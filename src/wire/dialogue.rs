@@ -5,14 +5,9 @@
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
 mod frames;
-mod mavlink;
-mod mpu;
-mod msp;
-mod vectornav;
 
 pub use frames::frames;
 
-use super::{Controller, Protocol};
 use crate::geometry::Attitude;
 use crate::time::{Rate, SimTime};
 
@@ -97,35 +92,22 @@ pub trait Dialogue: Send {
 
 /// After so long without a byte, ns, what is held is judged as it is: noise that looks like the start of a long packet
 /// would hide what comes behind it.
-const PAUSE: i64 = 100_000_000;
+pub(super) const PAUSE: i64 = 100_000_000;
 
 /// Watches for a [`PAUSE`] in what arrives.
 #[derive(Debug, Default)]
-struct Pause {
+pub(super) struct Pause {
     heard: Option<i64>,
 }
 
 impl Pause {
     /// Bytes came.
-    fn heard(&mut self, now: i64) {
+    pub fn heard(&mut self, now: i64) {
         self.heard = Some(now);
     }
 
     /// Whether there is one since then; said once.
-    fn is_now(&mut self, now: i64) -> bool {
+    pub fn is_now(&mut self, now: i64) -> bool {
         self.heard.take_if(|heard| now - *heard >= PAUSE).is_some()
     }
 }
-
-/// The conversation of a protocol, as `controller` wants it led; `None` where the other side says nothing.
-pub fn dialogue(protocol: Protocol, controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
-    match protocol {
-        Protocol::Mpu => Some(Box::new(mpu::Answers::new())),
-        Protocol::Msp => Some(Box::new(msp::Inav::new(controller))),
-        Protocol::Vectornav => Some(Box::new(vectornav::Unit::new(controller))),
-        Protocol::Mip | Protocol::Csv | Protocol::Jsonl => None,
-        Protocol::Mavlink => Some(Box::new(mavlink::Mavlink::new(controller))),
-    }
-}
-
-pub(super) use mpu::unwrapped;

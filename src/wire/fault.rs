@@ -1,11 +1,9 @@
 //! Faults of an output: what becomes of packets on their way, for a while. They are at work in `faults`.
 
-use super::Protocol;
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::{NANOS, SimTime};
 use std::fmt;
-use std::ops::Range;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,20 +103,5 @@ impl Fault {
             return Err(KeyError::new("duration", message));
         }
         Ok(())
-    }
-}
-
-/// The bytes of a packet that may be hurt without hurting its neighbours, and the byte that none of them may become.
-pub(super) fn inside(protocol: Protocol, len: usize) -> (Range<usize>, Option<u8>) {
-    match protocol {
-        Protocol::Mpu => (0..len.saturating_sub(1), Some(0)),
-        // Magic, length, flags, sequence, sender and message: without them the length of the packet is lost.
-        Protocol::Mavlink => (10.min(len)..len, None),
-        // What says how long a packet is: `$X`, direction, flags, command and size; the sync byte with up to five of
-        // groups and fields; two sync bytes, the descriptor set and the length.
-        Protocol::Msp => (8.min(len)..len, None),
-        Protocol::Vectornav => (6.min(len)..len, None),
-        Protocol::Mip => (4.min(len)..len, None),
-        Protocol::Csv | Protocol::Jsonl => (0..len.saturating_sub(1), Some(b'\n')),
     }
 }

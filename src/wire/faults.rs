@@ -5,7 +5,7 @@
 //! Random ones draw once a packet, from the stream `output/I/fault/N/KIND`: I counts the run's outputs, N the faults
 //! of this one.
 
-use super::fault::{Fault, FaultKind, inside};
+use super::fault::{Fault, FaultKind};
 use super::{Packet, Protocol};
 use crate::random::{self, Stream};
 use crate::sensor::ByKind;
@@ -232,7 +232,8 @@ impl Faulty {
     /// Flips bits, no bit twice.
     fn corrupt(&mut self, packet: &mut Packet) {
         let len = usize::from(packet.len);
-        let (within, never) = if self.spares_framing { inside(self.protocol, len) } else { (0..len, None) };
+        let (within, never) =
+            if self.spares_framing { (self.protocol.row().inside)(len) } else { (0..len, None) };
         let mut places: Vec<_> = within.flat_map(|byte| (0..8).map(move |bit| (byte, 1u8 << bit))).collect();
         let mut left = self.bits;
         while left > 0 && !places.is_empty() {

@@ -6,17 +6,49 @@
 //! before; the temperature of the first sensor that has one in the scene, else the barometer's. Axes are
 //! Forward-Right-Down; the field is in gauss, which is 100 µT, pressure in hPa.
 
+mod damage;
+mod dialogue;
 mod extra;
 mod gps;
+mod reader;
 
 pub use extra::{Extra, Extras};
 
+use super::Controller;
+use super::row::{Row, Shared};
 use super::{Encoder, EverySecond, Newest, Now, Packet, Protocol, Setup, body, pressure};
 use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, Claims, Kinds, SensorKind};
 use crate::time::SimTime;
 use extra::Sender;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
+
+pub(super) static ROW: Row = Row {
+    name: "mavlink",
+    about: "MAVLink 2: HIL_SENSOR (gyro, accel, mag, baro, airspeed) at each gyro tick, HIL_GPS, HEARTBEAT and SYSTEM_TIME once a second",
+    carries: Kinds::ALL,
+    encoder: |setup| Box::new(Mavlink::new(setup)),
+    reader: |assumed| match assumed.recorded {
+        true => Box::new(reader::Reader::recorded()),
+        false => Box::new(reader::Reader::default()),
+    },
+    dialogue: |controller| Some(Box::new(dialogue::Mavlink::new(controller))),
+    shared: |first| Some(Shared::at_ticks("HIL_SENSOR", first)),
+    check: |options, _| {
+        let px4 = matches!(options.controller, Some(Controller::Px4 | Controller::Px4Sitl));
+        let truth = options.extras.iter().find(|extra| px4 && extra.is_truth());
+        truth.map_or(Ok(()), |truth| {
+            Err(format!(
+                "{} carries the true attitude, which PX4 has to find out itself: in HITL it fights the estimator; leave it out, the score does not need it",
+                truth.name()
+            ))
+        })
+    },
+    greeting: reader::ground_station,
+    is_numbered: true,
+    // Magic, length, flags, sequence, sender and message: without them the length of the packet is lost.
+    inside: |len| (10.min(len)..len, None),
+};
 
 /// The simulator's own ids: the vehicle's system where nothing is known of it, a component of its own.
 pub(super) const SYSTEM: u8 = 1;

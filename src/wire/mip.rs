@@ -4,14 +4,32 @@
 //! standard atmosphere at sea level. Axes are forward, right, down; the field is in gauss, specific force in g. The stream ends with a
 //! vehicle that has stopped.
 
-use super::latest::{Latest, in_units, pascals};
+mod reader;
+
+use super::latest::{CARRIED, Latest, in_units, pascals};
 use super::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
+use super::row::{Row, Shared, any};
 use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::earth::STANDARD_GRAVITY;
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::SimTime;
 use ratetable_protocols::mip::{self, imu};
+
+pub(super) static ROW: Row = Row {
+    name: "mip",
+    about: "a MicroStrain unit for ArduPilot: pressure, mag, accel and gyro at each gyro tick",
+    carries: CARRIED,
+    encoder: |setup| Box::new(Mip::new(setup)),
+    reader: |_| Box::new(reader::Reader::default()),
+    dialogue: |_| None,
+    shared: |first| Some(Shared::at_ticks("a packet", first)),
+    check: any,
+    greeting: |_| vec![0],
+    is_numbered: false,
+    // What says how long a packet is comes first: two sync bytes, the descriptor set and the length.
+    inside: |len| (4.min(len)..len, None),
+};
 
 pub(super) struct Mip {
     latest: Latest,

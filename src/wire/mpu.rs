@@ -3,12 +3,39 @@
 //! Readings become counts on the chip's axes. A sensor whose scene gives no such scale is carried at ±2000 °/s,
 //! ±16 g and 0.15 µT with ASA 128, and 25 °C.
 
+mod dialogue;
+mod reader;
+
+use super::row::Row;
 use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup, body};
 use crate::earth::STANDARD_GRAVITY;
 use crate::sensor::{ByKind, Kinds, Mount, REFERENCE_TEMPERATURE, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
 use ratetable_protocols::mpu::registers::{self, Chip};
 use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
+
+pub(super) static ROW: Row = Row {
+    name: "mpu",
+    about: "registers of an MPU-6050 or MPU-9250 in COBS frames with a CRC: imu, gyro, accel, mag, config",
+    carries: Kinds::TRIADS,
+    encoder: |setup| Box::new(Mpu::new(setup)),
+    reader: |assumed| Box::new(reader::Reader::new(assumed.mounts)),
+    dialogue: |_| Some(Box::new(dialogue::Answers::new())),
+    shared: |_| None,
+    check: |options, sensors| {
+        let has = |kind| sensors.iter().any(|sensor| sensor.kind == kind);
+        match options.layout {
+            Some(Layout::Burst) if !(has(SensorKind::Gyro) && has(SensorKind::Accel)) => {
+                Err("`layout = \"burst\"` needs both [gyro] and [accel]".into())
+            }
+            _ => Ok(()),
+        }
+    },
+    greeting: |_| vec![0],
+    is_numbered: true,
+    // A packet ends with its zero.
+    inside: |len| (0..len.saturating_sub(1), Some(0)),
+};
 
 /// No adjustment of the magnetometer's sensitivity.
 const ASA: u8 = 128;

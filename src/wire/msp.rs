@@ -4,7 +4,11 @@
 //! horizontal part turned to true north: INAV takes the declination as 0. INAV keeps what came last for ever, so the
 //! stream ends with a vehicle that has stopped.
 
-use super::latest::{Latest, pascals};
+mod dialogue;
+mod reader;
+
+use super::latest::{CARRIED, Latest, pascals};
+use super::row::{Row, Shared, any};
 use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
 use crate::geometry::{Body, Nav, Vector};
@@ -12,6 +16,31 @@ use crate::motion::Truth;
 use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
 use ratetable_protocols::msp::{self, Message, simulator};
+
+pub(super) static ROW: Row = Row {
+    name: "msp",
+    about: "MSPv2 for INAV: its simulator message (0x201F) with all sensors, at most 100 a second",
+    carries: CARRIED,
+    encoder: |setup| Box::new(Msp::new(setup)),
+    reader: |_| Box::new(reader::Reader::default()),
+    dialogue: |controller| Some(Box::new(dialogue::Inav::new(controller))),
+    shared: |first| {
+        let capped = first.rate.as_hz() > FASTEST.as_hz();
+        Some(match capped {
+            true => Shared {
+                rate: FASTEST,
+                what: format!("{} packets a second, as many as an INAV board takes", FASTEST.as_hz()),
+                fits: Some(FASTEST),
+            },
+            false => Shared::at_ticks("a packet", first),
+        })
+    },
+    check: any,
+    greeting: |_| reader::question(),
+    is_numbered: false,
+    // What says how long a packet is comes first: `$X`, direction, flags, command and size.
+    inside: |len| (8.min(len)..len, None),
+};
 
 /// As many packets a second as an INAV board takes.
 pub(super) const FASTEST: Rate = Rate::hz(100);

@@ -3,18 +3,12 @@
 //! Each protocol is one file that hands on every [`Sample`] and counts what came besides ([`Counts`]). Nothing
 //! panics on any bytes, memory stays bounded, and damage costs at most itself.
 
-mod damage;
-mod log;
-mod mavlink;
-mod mip;
-mod mpu;
-mod msp;
-mod text;
-mod vectornav;
+pub(super) mod log;
+mod stream;
 
 pub use log::Stamps;
+pub use stream::Samples;
 
-use super::Protocol;
 use crate::geometry::{Axes, Body, Vector};
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
@@ -60,7 +54,7 @@ pub struct Source {
 
 impl Source {
     /// The only sensor of its kind on the link.
-    const fn only(message: &'static str) -> Source {
+    pub(super) const fn only(message: &'static str) -> Source {
         Source { message, set: [0; 3] }
     }
 }
@@ -76,17 +70,6 @@ impl fmt::Display for Source {
     }
 }
 
-/// A word that makes a sender begin which waits for one: a ground station's heartbeat in MAVLink, and in the other
-/// protocols bytes that mean nothing.
-pub fn greeting(protocol: Protocol, seq: u8) -> Vec<u8> {
-    match protocol {
-        Protocol::Mavlink => mavlink::ground_station(seq),
-        Protocol::Mpu | Protocol::Mip => vec![0],
-        Protocol::Msp => msp::question(),
-        Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => b"\n".to_vec(),
-    }
-}
-
 /// What the packets do not say, so that a reader has to assume it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumed {
@@ -94,12 +77,14 @@ pub struct Assumed {
     pub axes: Axes,
     /// From body to the chip's axes, of gyro, accel and mag, for the registers of `mpu`.
     pub mounts: [Mount; 3],
+    /// Whether it is a recording, which may have a stamp before each packet.
+    pub recorded: bool,
 }
 
 impl Default for Assumed {
     /// Forward-right-down, and chips whose x points forward and z up, as the encoders of a plain scene have it.
     fn default() -> Assumed {
-        Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3] }
+        Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3], recorded: false }
     }
 }
 
@@ -138,13 +123,13 @@ impl Counts {
     const NAMES: usize = 64;
 
     /// Counts what is no packet: damage, unless the stream was joined there.
-    fn refuse(&mut self) {
+    pub(super) fn refuse(&mut self) {
         let first = self.packets == 0 && self.damaged == 0 && self.joined_midway == 0;
         *if first { &mut self.joined_midway } else { &mut self.damaged } += 1;
     }
 
     /// Takes in the number of a packet by the sender that `losses` keeps account of.
-    fn number(&mut self, losses: &mut Losses, seq: u8) {
+    pub(super) fn number(&mut self, losses: &mut Losses, seq: u8) {
         let before = *losses;
         losses.observe(seq);
         self.duplicates += losses.duplicates() - before.duplicates();
@@ -152,7 +137,7 @@ impl Counts {
         self.lost = self.lost + losses.lost() - before.lost();
     }
 
-    fn foreign(&mut self, name: &str) {
+    pub(super) fn foreign(&mut self, name: &str) {
         if let Some(count) = self.foreign.get_mut(name) {
             *count += 1;
             return;
@@ -162,85 +147,13 @@ impl Counts {
     }
 }
 
-/// Reads the samples out of one stream of bytes, however it is cut up.
-pub struct Samples {
-    counts: Counts,
-    reader: Reader,
-}
+/// Reads a protocol's packets back to samples.
+pub(super) trait Reader: Send {
+    /// Takes bytes in as they arrive, and hands every sample in them to `each`.
+    fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample));
 
-enum Reader {
-    Mpu(Box<mpu::Reader>),
-    Mavlink(Box<mavlink::Reader>),
-    Msp(Box<msp::Reader>),
-    Vectornav(Box<vectornav::Reader>),
-    Mip(Box<mip::Reader>),
-    Text(text::Reader),
-}
-
-impl Samples {
-    /// For a stream of which nothing more is known.
-    pub fn new(protocol: Protocol) -> Samples {
-        Samples::assuming(protocol, &Assumed::default())
-    }
-
-    /// For what was recorded before: the same, and a recording of MAVLink may be a ground station's log (`.tlog`), with a
-    /// stamp in front of each packet, which its content tells.
-    pub fn recorded(protocol: Protocol) -> Samples {
-        match protocol {
-            Protocol::Mavlink => Samples::of(Reader::Mavlink(Box::new(mavlink::Reader::recorded()))),
-            _ => Samples::new(protocol),
-        }
-    }
-
-    /// For a stream whose axes are known.
-    pub fn assuming(protocol: Protocol, assumed: &Assumed) -> Samples {
-        let reader = match protocol {
-            Protocol::Mpu => Reader::Mpu(Box::new(mpu::Reader::new(assumed.mounts))),
-            Protocol::Mavlink => Reader::Mavlink(Box::default()),
-            Protocol::Msp => Reader::Msp(Box::default()),
-            Protocol::Vectornav => Reader::Vectornav(Box::default()),
-            Protocol::Mip => Reader::Mip(Box::default()),
-            Protocol::Csv => Reader::Text(text::Reader::csv(assumed.axes)),
-            Protocol::Jsonl => Reader::Text(text::Reader::jsonl(assumed.axes)),
-        };
-        Samples::of(reader)
-    }
-
-    fn of(reader: Reader) -> Samples {
-        let numbered = matches!(reader, Reader::Mpu(_) | Reader::Mavlink(_));
-        Samples { counts: Counts { numbered, ..Counts::default() }, reader }
-    }
-
-    /// Takes bytes in as they arrive and hands on every sample in them, in the order of the bytes.
-    pub fn feed(&mut self, bytes: &[u8], mut each: impl FnMut(Sample)) {
-        self.counts.bytes += bytes.len() as u64;
-        match &mut self.reader {
-            Reader::Mpu(reader) => reader.feed(bytes, &mut self.counts, &mut each),
-            Reader::Mavlink(reader) => reader.feed(bytes, &mut self.counts, &mut each),
-            Reader::Msp(reader) => reader.feed(bytes, &mut self.counts, &mut each),
-            Reader::Vectornav(reader) => reader.feed(bytes, &mut self.counts, &mut each),
-            Reader::Mip(reader) => reader.feed(bytes, &mut self.counts, &mut each),
-            Reader::Text(reader) => reader.feed(bytes, &mut self.counts, &mut each),
-        }
-    }
-
-    /// Judges what is held as if nothing more were to come; half a packet at the end is no damage.
-    pub fn finish(&mut self, mut each: impl FnMut(Sample)) {
-        match &mut self.reader {
-            // A packet ends with its zero.
-            Reader::Mpu(_) => {}
-            Reader::Mavlink(reader) => reader.finish(&mut self.counts, &mut each),
-            Reader::Msp(reader) => reader.finish(&mut self.counts, &mut each),
-            Reader::Vectornav(reader) => reader.finish(&mut self.counts, &mut each),
-            Reader::Mip(reader) => reader.finish(&mut self.counts, &mut each),
-            Reader::Text(reader) => reader.finish(&mut self.counts, &mut each),
-        }
-    }
-
-    /// What has come so far.
-    pub fn counts(&self) -> &Counts {
-        &self.counts
-    }
+    /// Judges what is held as if nothing more were to come.
+    fn finish(&mut self, _counts: &mut Counts, _each: &mut dyn FnMut(Sample)) {}
 }
 
 #[cfg(test)]

@@ -5,14 +5,33 @@
 //! do not use that one. Axes are forward, right, down; the field is in gauss. The stream ends with a vehicle that has
 //! stopped.
 
-use super::latest::{Latest, in_units, pascals};
+mod dialogue;
+mod reader;
+
+use super::latest::{CARRIED, Latest, in_units, pascals};
 use super::mavlink::MICROTESLA_A_GAUSS;
+use super::row::{Row, Shared, any};
 use super::{Encoder, Now, Packet, Setup, body, stopped};
 use crate::geometry::{Euler, Vector};
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Kinds, REFERENCE_TEMPERATURE, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
 use ratetable_protocols::vectornav::{self, MAX_LEN, ahrs, imu};
+
+pub(super) static ROW: Row = Row {
+    name: "vectornav",
+    about: "a VN-100 for ArduPilot: IMU packets at the gyro's rate or that asked for, AHRS packets at 50 Hz",
+    carries: CARRIED,
+    encoder: |setup| Box::new(Vectornav::new(setup)),
+    reader: |_| Box::new(reader::Reader::default()),
+    dialogue: |controller| Some(Box::new(dialogue::Unit::new(controller))),
+    shared: |first| Some(Shared::at_ticks("a packet", first)),
+    check: any,
+    greeting: |_| b"\n".to_vec(),
+    is_numbered: false,
+    // What says how long a packet is comes first: the sync byte with up to five of groups and fields.
+    inside: |len| (6.min(len)..len, None),
+};
 
 /// AHRS packets a second.
 const AHRS: Rate = Rate::hz(50);

@@ -4,7 +4,7 @@ use super::SimTime;
 use ratetable_protocols::mavlink::{Decoder, Received};
 
 /// As many bytes of a recording as are looked at.
-pub(super) const JUDGED: usize = 16_384;
+pub(in crate::wire) const JUDGED: usize = 16_384;
 
 /// As many stamped packets as make a log.
 const ENOUGH: u64 = 2;
@@ -13,7 +13,7 @@ const ENOUGH: u64 = 2;
 const LONGEST: i64 = 3_600_000_000_000;
 
 /// Whether the bytes read better with a stamp in front of each packet than without.
-pub(super) fn has_stamps(bytes: &[u8]) -> bool {
+pub(in crate::wire) fn has_stamps(bytes: &[u8]) -> bool {
     let (plain, stamped) = (read(Decoder::new(), bytes), read(Decoder::stamped(), bytes));
     stamped.packets >= ENOUGH && stamped.gaps < plain.gaps && 2 * stamped.dated > stamped.packets
 }
@@ -42,7 +42,7 @@ fn read(mut decoder: Decoder, bytes: &[u8]) -> Read {
 }
 
 /// A stamp as a time since 1970; `None` beyond the year 2112, which is no stamp.
-pub(super) fn time(us: u64) -> Option<SimTime> {
+pub(in crate::wire) fn time(us: u64) -> Option<SimTime> {
     (us >> 52 == 0).then(|| SimTime(us as i64 * 1000))
 }
 
@@ -57,7 +57,7 @@ pub struct Stamps {
 }
 
 impl Stamps {
-    pub(super) fn take(&mut self, t: SimTime) {
+    pub(in crate::wire) fn take(&mut self, t: SimTime) {
         let Some(before) = self.newest.replace(t) else { return };
         let step = t.0 - before.0;
         if (0..=LONGEST).contains(&step) {

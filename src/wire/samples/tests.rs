@@ -1,6 +1,7 @@
 //! What every encoder makes comes back sample for sample; damage, gaps and any bytes at all.
 
 use super::*;
+use crate::wire::Protocol;
 use crate::scene::Plan;
 use crate::sensor::Reading;
 use crate::time::Rate;

@@ -10,7 +10,7 @@ use ratetable::player::{Moment, Player};
 use ratetable::scene::{Destination, Output, Plan};
 use ratetable::score::{self, Figures, Timed};
 use ratetable::time::SimTime;
-use ratetable::wire::dialogue::{Dialogue, Estimate, Said, Stage, Stamp, dialogue};
+use ratetable::wire::dialogue::{Dialogue, Estimate, Said, Stage, Stamp};
 use ratetable::wire::{self, Now, Packet, Setup};
 use ratetable_firmware_host_tests::standin::{Firmware, Make, Record, Settings};
 
@@ -160,7 +160,7 @@ pub fn converse(
 ) -> Told {
     let output = Output::to(case.to.parse::<Destination>().expect("a destination"));
     let mut table = Table {
-        dialogue: dialogue(output.to.protocol, output.wire.controller),
+        dialogue: output.to.protocol.dialogue(output.wire.controller),
         firmware: case.make.firmware(settings),
         answers: Vec::new(),
         notices: Vec::new(),

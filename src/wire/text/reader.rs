@@ -1,10 +1,10 @@
 //! `csv` and `jsonl`: a line a sample. Names and keys beyond ours are left alone, so that the lines of other
 //! programs read too.
 
-use super::{Carrier, Counts, Sample, Source};
 use crate::geometry::Axes;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
+use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
 use glam::DVec3;
 use std::borrow::Cow;
 
@@ -62,27 +62,8 @@ impl Reader {
         Reader { axes, source, parse, held: Vec::with_capacity(LONGEST), overlong: false }
     }
 
-    pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
-            let (piece, ends) = piece.strip_suffix(b"\n").map_or((piece, false), |piece| (piece, true));
-            self.overlong |= self.held.len() + piece.len() > LONGEST;
-            if !self.overlong {
-                self.held.extend_from_slice(piece);
-            }
-            if ends {
-                self.close(counts, each);
-            }
-        }
-    }
-
-    pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        if !self.overlong && std::str::from_utf8(&self.held).is_ok_and(|line| (self.parse)(line).is_some()) {
-            self.close(counts, each);
-        }
-    }
-
     /// Judges the line that is held.
-    fn close(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+    fn close(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         let overlong = std::mem::take(&mut self.overlong);
         let line = std::str::from_utf8(&self.held).ok().filter(|_| !overlong).map(str::trim);
         match line.map(|line| (line, (self.parse)(line))) {
@@ -115,6 +96,27 @@ impl Reader {
         };
         let value = value.filter(|value| value.is_finite()).map(|value| self.axes.body_in(value));
         Sample { kind, source: self.source, t: Some(SimTime(line.t_ns)), value, packet: Carrier::default() }
+    }
+}
+
+impl samples::Reader for Reader {
+    fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
+        for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
+            let (piece, ends) = piece.strip_suffix(b"\n").map_or((piece, false), |piece| (piece, true));
+            self.overlong |= self.held.len() + piece.len() > LONGEST;
+            if !self.overlong {
+                self.held.extend_from_slice(piece);
+            }
+            if ends {
+                self.close(counts, each);
+            }
+        }
+    }
+
+    fn finish(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
+        if !self.overlong && std::str::from_utf8(&self.held).is_ok_and(|line| (self.parse)(line).is_some()) {
+            self.close(counts, each);
+        }
     }
 }
 

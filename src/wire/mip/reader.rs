@@ -1,12 +1,12 @@
 //! `mip`: inertial packets back to readings, a sample of each sensor in every packet, new or held. The time is that of
 //! whichever field of theirs has one; ours have none.
 
-use super::{Carrier, Counts, Sample, Source};
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::MICROTESLA_A_GAUSS;
+use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
 use glam::DVec3;
 use ratetable_protocols::Error;
 use ratetable_protocols::mip::{Decoder, imu};
@@ -16,13 +16,13 @@ pub(super) struct Reader {
     decoder: Decoder,
 }
 
-impl Reader {
-    pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+impl samples::Reader for Reader {
+    fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         let Reader { decoder } = self;
         decoder.feed(bytes, |received| take(received, counts, each));
     }
 
-    pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+    fn finish(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         let Reader { decoder } = self;
         decoder.finish(|received| {
             if !matches!(received, Err(Error::Malformed | Error::Checksum)) {
@@ -37,7 +37,7 @@ fn time(time: Option<imu::Time>) -> Option<SimTime> {
     i64::try_from(time?.ns()?).ok().map(SimTime)
 }
 
-fn take(received: Result<imu::Repr, Error>, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+fn take(received: Result<imu::Repr, Error>, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
     let seen = match received {
         Ok(seen) => seen,
         Err(Error::UnknownType(descriptor)) => {

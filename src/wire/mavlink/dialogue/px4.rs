@@ -11,7 +11,6 @@ use crate::geometry::Attitude;
 use crate::time::NANOS;
 use crate::wire::Protocol;
 use crate::wire::mavlink::HARDWARE_IN_THE_LOOP;
-use crate::wire::samples;
 
 /// The slowest link that PX4 does not take samples from, B/s.
 const DEAF_RATE: i32 = 5000;
@@ -131,7 +130,7 @@ impl Px4 {
         let seq = self.woken.map_or(0, |(_, seq)| seq.wrapping_add(1));
         if self.woken.is_none_or(|(at, _)| now - at >= NANOS) {
             self.woken = Some((now, seq));
-            say(Said::Reply(&samples::greeting(Protocol::Mavlink, seq)));
+            say(Said::Reply(&Protocol::Mavlink.greeting(seq)));
         }
         if now - started > 5 * NANOS {
             once(&mut self.given.nobody, say, || {

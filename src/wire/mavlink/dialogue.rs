@@ -10,9 +10,9 @@ mod px4;
 mod steady;
 mod voice;
 
-use super::{Dialogue, Estimate, Pause, Peer, Said, Stage, Stamp};
 use crate::geometry::{Attitude, Euler};
 use crate::wire::Controller;
+use crate::wire::dialogue::{Dialogue, Estimate, Pause, Peer, Said, Stage, Stamp};
 use crate::wire::mavlink::{COMPONENT, NO_AUTOPILOT};
 use asking::Asking;
 use glam::DQuat;

@@ -1,10 +1,10 @@
 //! `vectornav`: IMU packets back to readings, a sample of each sensor in every packet, new or held.
 
-use super::{Carrier, Counts, Sample, Source};
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::MICROTESLA_A_GAUSS;
+use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
 use glam::DVec3;
 use ratetable_protocols::Error;
 use ratetable_protocols::vectornav::{Decoder, Packet};
@@ -12,12 +12,12 @@ use ratetable_protocols::vectornav::{Decoder, Packet};
 #[derive(Default)]
 pub(super) struct Reader(Decoder);
 
-impl Reader {
-    pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+impl samples::Reader for Reader {
+    fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         self.0.feed(bytes, |received| take(received, counts, each));
     }
 
-    pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+    fn finish(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         self.0.finish(|received| {
             if received.is_ok() {
                 take(received, counts, each);
@@ -26,7 +26,7 @@ impl Reader {
     }
 }
 
-fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
     let Ok(packet) = received else { return counts.refuse() };
     counts.packets += 1;
     let Packet::Imu(seen) = packet else { return counts.foreign(packet.name()) };

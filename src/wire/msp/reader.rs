@@ -1,11 +1,11 @@
 //! `msp`: the simulator message back to readings, a sample of each sensor in every packet, new or held. It says no
 //! time, and of the field only the direction, so that one has no value.
 
-use super::{Carrier, Counts, Sample, Source};
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::{Body, Vector};
 use crate::sensor::SensorKind;
 use crate::wire::msp::{ACCEL_SCALE, GYRO_SCALE};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
 use ratetable_protocols::Error;
 use ratetable_protocols::msp::{
     Decoder, Direction, MAX_LEN, Message, Received, api_version, encode, simulator,
@@ -14,12 +14,12 @@ use ratetable_protocols::msp::{
 #[derive(Default)]
 pub(super) struct Reader(Decoder);
 
-impl Reader {
-    pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+impl samples::Reader for Reader {
+    fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         self.0.feed(bytes, |received| take(received, counts, each));
     }
 
-    pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+    fn finish(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         self.0.finish(|received| {
             if received.is_ok() {
                 take(received, counts, each);
@@ -28,7 +28,7 @@ impl Reader {
     }
 }
 
-fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
     let Ok(Received { direction, command, message }) = received else { return counts.refuse() };
     counts.packets += 1;
     let Some(Message::Simulator(seen)) = message else {

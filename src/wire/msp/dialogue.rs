@@ -3,8 +3,9 @@
 //! Until it answers, INAV is asked who it is and for its attitude twice a second. It hears the stream once it answers
 //! a simulator message; it answers every one.
 
-use super::{Controller, Dialogue, Estimate, Pause, Said, Stage, Stamp};
 use crate::geometry::{Attitude, Euler};
+use crate::wire::Controller;
+use crate::wire::dialogue::{Dialogue, Estimate, Pause, Said, Stage, Stamp};
 use ratetable_protocols::Error;
 use ratetable_protocols::msp::{self, Decoder, Direction, MAX_LEN, Message, Received, fc_variant, simulator};
 
@@ -150,8 +151,8 @@ fn estimate(roll: f64, pitch: f64, yaw: f64) -> Said<'static> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::PAUSE;
     use super::*;
+    use crate::wire::dialogue::PAUSE;
     use proptest::prelude::*;
     use ratetable_protocols::msp::{attitude, simulator_reply};
 

@@ -2,12 +2,12 @@
 //! send what their own sensors read; one sample for each sensor that a message says is new.
 
 use super::damage::Stretches;
-use super::{Carrier, Counts, Sample, Source, log};
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Source, log};
 use glam::DVec3;
 use ratetable_protocols::mavlink::{
     Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, hil_sensor, known,
@@ -40,7 +40,24 @@ impl Reader {
         Reader { unjudged: Some(Vec::new()), ..Reader::default() }
     }
 
-    pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+    /// Reads what was held of a recording as what it turns out to be.
+    fn judge(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
+        let Some(held) = self.unjudged.take() else { return };
+        if log::has_stamps(&held) {
+            self.decoder = Decoder::stamped();
+            counts.stamps = Some(log::Stamps::default());
+        }
+        self.read(&held, counts, each);
+    }
+
+    fn read(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
+        let Reader { decoder, senders, .. } = self;
+        decoder.feed(bytes, |received| senders.take(received, counts, each));
+    }
+}
+
+impl samples::Reader for Reader {
+    fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         match &mut self.unjudged {
             Some(held) => {
                 held.extend_from_slice(bytes);
@@ -52,7 +69,7 @@ impl Reader {
         }
     }
 
-    pub(super) fn finish(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+    fn finish(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         self.judge(counts, each);
         let Reader { decoder, senders, .. } = self;
         decoder.finish(|received| {
@@ -60,21 +77,6 @@ impl Reader {
                 senders.take(received, counts, each);
             }
         });
-    }
-
-    /// Reads what was held of a recording as what it turns out to be.
-    fn judge(&mut self, counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        let Some(held) = self.unjudged.take() else { return };
-        if log::has_stamps(&held) {
-            self.decoder = Decoder::stamped();
-            counts.stamps = Some(log::Stamps::default());
-        }
-        self.read(&held, counts, each);
-    }
-
-    fn read(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
-        let Reader { decoder, senders, .. } = self;
-        decoder.feed(bytes, |received| senders.take(received, counts, each));
     }
 }
 
@@ -97,12 +99,7 @@ struct Sender {
 }
 
 impl Senders {
-    fn take(
-        &mut self,
-        received: Result<Received, Error>,
-        counts: &mut Counts,
-        each: &mut impl FnMut(Sample),
-    ) {
+    fn take(&mut self, received: Result<Received, Error>, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         let Ok(received) = received else {
             let before = counts.damaged;
             counts.refuse();
@@ -242,7 +239,7 @@ impl Inertial {
         self.fresh.contains(&true)
     }
 
-    fn hand_on(&self, packet: Carrier, each: &mut impl FnMut(Sample)) {
+    fn hand_on(&self, packet: Carrier, each: &mut dyn FnMut(Sample)) {
         let Inertial { source, t, fresh, values, units } = *self;
         let fresh = SensorKind::ALL.into_iter().zip(fresh).filter(|(_, fresh)| *fresh);
         for (kind, _) in fresh {

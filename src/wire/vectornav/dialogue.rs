@@ -4,8 +4,9 @@
 //! its boot until all are. A command is answered by itself, a register that is read by its contents, anything else by
 //! an error, so that it is sent again. After the last one it is deaf to all but the stream.
 
-use super::{Controller, Dialogue, Pause, Peer, Said, Stage};
 use crate::time::Rate;
+use crate::wire::Controller;
+use crate::wire::dialogue::{Dialogue, Pause, Peer, Said, Stage};
 use ratetable_protocols::Error;
 use ratetable_protocols::vectornav::line::Line;
 use ratetable_protocols::vectornav::{Decoder, MAX_LEN, Packet, encode};
@@ -188,8 +189,8 @@ fn reply(text: &str, say: &mut dyn FnMut(Said<'_>)) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::PAUSE;
     use super::*;
+    use crate::wire::dialogue::PAUSE;
     use proptest::prelude::*;
 
     /// Replies as text, notices behind a `#`.

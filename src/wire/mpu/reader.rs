@@ -1,11 +1,11 @@
 //! `mpu`: registers back to readings, by the scales of the newest config packet.
 
-use super::{Carrier, Counts, Sample, Source};
+use super::dialogue::unwrapped;
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
-use crate::wire::dialogue::unwrapped;
+use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
 use ratetable_protocols::Losses;
 use ratetable_protocols::mpu::registers::{self, ST1_DATA_READY, ST2_16_BIT, ST2_OVERFLOW};
 use ratetable_protocols::mpu::{Decoder, Packet, Received, config, mag};
@@ -22,8 +22,10 @@ impl Reader {
     pub(super) fn new(mounts: [Mount; 3]) -> Reader {
         Reader { decoder: Decoder::new(), losses: Losses::new(), newest: None, config: None, mounts }
     }
+}
 
-    pub(super) fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut impl FnMut(Sample)) {
+impl samples::Reader for Reader {
+    fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         let Reader { decoder, losses, newest, config, mounts } = self;
         decoder.feed(bytes, |received| {
             let Ok(Received { seq, t_us, packet }) = received else { return counts.refuse() };

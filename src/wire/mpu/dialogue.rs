@@ -1,8 +1,8 @@
 //! `mpu`: the answer packet, a firmware's estimate with the time of the sample that it rests on.
 
-use super::{Dialogue, Estimate, Said, Stamp};
 use crate::geometry::Attitude;
 use crate::time::SimTime;
+use crate::wire::dialogue::{Dialogue, Estimate, Said, Stamp};
 use glam::DQuat;
 use ratetable_protocols::mpu;
 
@@ -45,7 +45,7 @@ impl Dialogue for Answers {
 }
 
 /// The time whose microseconds are `t_us` modulo 2³² and which is nearest to `near`, but not before the beginning.
-pub(in crate::wire) fn unwrapped(t_us: u32, near: SimTime) -> SimTime {
+pub(super) fn unwrapped(t_us: u32, near: SimTime) -> SimTime {
     let near_us = near.0 / 1000;
     let ahead = t_us.wrapping_sub(near_us as u32) as i32;
     let nearest = near_us + i64::from(ahead);
