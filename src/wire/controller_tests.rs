@@ -5,6 +5,8 @@ use super::*;
 use crate::geometry::Euler;
 use crate::player::Player;
 use crate::scene::Plan;
+use crate::sensor::{Kinds, SensorKind};
+use crate::time::NANOS;
 use crate::time::Rate;
 use ratetable_protocols::msp::{self, Message, simulator};
 use ratetable_protocols::vectornav::{ahrs, imu as vn_imu};

@@ -16,7 +16,7 @@ pub use extra::{Extra, Extras};
 
 use super::Controller;
 use super::row::{Row, Shared};
-use super::{Encoder, EverySecond, Newest, Now, Packet, Protocol, Setup, body, pressure};
+use super::{Encoder, EverySecond, Newest, Now, Packet, Setup, body, pressure};
 use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, Claims, Kinds, SensorKind};
 use crate::time::SimTime;
@@ -113,7 +113,7 @@ impl Mavlink {
                 .sensors
                 .iter()
                 .map(|sensor| sensor.kind)
-                .find(|kind| Protocol::Mavlink.carries(*kind) && *kind != SensorKind::Gps),
+                .find(|kind| ROW.carries.contains(*kind) && *kind != SensorKind::Gps),
             claims: setup
                 .sensors
                 .iter()

@@ -26,12 +26,48 @@ pub struct Sample {
     /// When it was taken by the sender's clock, where the packet says so, in whole µs (text, `vectornav`, `mip`: ns; some
     /// MAVLink messages: ms). The 32 bits of `mpu` and `mip` go on counting here where they wrap.
     pub t: Option<SimTime>,
-    /// The reading in body axes, rad/s, m/s² or µT; `None` where the packet does not say what its counts mean
+    /// The reading; `None` where the packet does not say what its counts mean
     /// (`mpu` before its first config packet, raw messages, the field in `msp`) or that they mean nothing (an
     /// overflow).
-    pub value: Option<Vector<Body>>,
+    pub value: Option<Sensed>,
     /// What else is known of its packet.
     pub packet: Carrier,
+}
+
+/// What a sample says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sensed {
+    /// Of a gyroscope (rad/s), an accelerometer (m/s²) or a magnetometer (µT), in body axes.
+    Body(Vector<Body>),
+    /// Of a barometer or a pitot tube, Pa.
+    Pressure(f64),
+}
+
+impl Sensed {
+    /// Body axes; `None` of a pressure.
+    pub fn body(self) -> Option<Vector<Body>> {
+        match self {
+            Sensed::Body(body) => Some(body),
+            Sensed::Pressure(_) => None,
+        }
+    }
+
+    /// Pa; `None` of body axes.
+    pub fn pressure(self) -> Option<f64> {
+        match self {
+            Sensed::Pressure(pascals) => Some(pascals),
+            Sensed::Body(_) => None,
+        }
+    }
+
+    /// Itself, unless it is no number.
+    pub(super) fn known(self) -> Option<Sensed> {
+        let is_number = match self {
+            Sensed::Body(body) => body.v.is_finite(),
+            Sensed::Pressure(pascals) => pascals.is_finite(),
+        };
+        is_number.then_some(self)
+    }
 }
 
 /// What is known of the packet that brings a sample, beside what it says.

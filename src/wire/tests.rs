@@ -1,10 +1,14 @@
 //! What the encoders make, read back by the decoders that a firmware uses.
 
 use super::*;
+use crate::earth::Place;
 use crate::earth::STANDARD_GRAVITY;
 use crate::player::Player;
 use crate::scene::Plan;
+use crate::schedule::{Schedule, Ticks};
 use crate::sensor::Mount;
+use crate::sensor::{Fix, Kinds, Measurement, SensorKind};
+use crate::time::NANOS;
 use crate::time::Rate;
 use proptest::prelude::*;
 use ratetable_protocols::mavlink::{self, Message, hil_sensor};
@@ -564,6 +568,22 @@ fn mavlink_has_the_pressure_with_its_bits_where_the_barometer_ticked() {
         }
         assert_eq!(ticked, 75);
     }
+}
+
+/// 20 m/s at sea level is 2.45 hPa.
+#[test]
+fn mavlink_has_the_differential_pressure_with_its_bit_where_the_pitot_tube_ticked() {
+    let scene = "duration = \"1 s\"\n[start]\nvelocity = \"[20, 0, 0] m/s\"\n[gyro]\nrate = \"100 Hz\"\n[airspeed]\nrate = \"20 Hz\"\n";
+    let (packets, _) = play(&plan(scene), Protocol::Mavlink, None);
+    let mut ticked = 0;
+    for (packet, message) in flown(&packets) {
+        let Message::HilSensor(seen) = message else { continue };
+        assert!((seen.diff_pressure - 2.45).abs() < 1e-4, "{}", seen.diff_pressure);
+        let ticks = packet.carries.contains(SensorKind::Airspeed);
+        assert_eq!(seen.fields_updated & 0x400 != 0, ticks);
+        ticked += u32::from(ticks);
+    }
+    assert_eq!(ticked, 20);
 }
 
 #[test]

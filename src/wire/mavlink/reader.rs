@@ -7,7 +7,7 @@ use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
-use crate::wire::samples::{self, Carrier, Counts, Sample, Source, log};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source, log};
 use glam::DVec3;
 use ratetable_protocols::mavlink::{
     Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, hil_sensor, known,
@@ -175,95 +175,95 @@ impl Sender {
     }
 }
 
-/// The bits of gyro, accel, mag and baro in HIL_SENSOR; the temperature may be another sensor's.
-const HIL_SENSOR: [u32; 4] =
-    [hil_sensor::GYRO, hil_sensor::ACCEL, hil_sensor::MAG, hil_sensor::PRESSURE & !hil_sensor::TEMPERATURE];
+/// The bits of the barometer in HIL_SENSOR; the temperature may be another sensor's.
+const ABSOLUTE: u32 = hil_sensor::PRESSURE & !hil_sensor::TEMPERATURE;
 
-/// What a message with readings says, of gyro, accel, mag and baro.
+/// What a message with readings says.
 struct Inertial {
     source: Source,
     t: Option<SimTime>,
-    /// Which are new.
-    fresh: [bool; 4],
-    /// In the message's own units.
-    values: [[f64; 3]; 4],
-    /// What those are in ours; `None` for counts.
-    units: Option<[f64; 4]>,
+    /// Each reading that is new, and what it says, where the message tells the unit.
+    fresh: [Option<(SensorKind, Option<Sensed>)>; 5],
 }
 
 impl Inertial {
     /// `None` for messages without readings.
     fn of(message: &Message, [system, component]: [u8; 2]) -> Option<Inertial> {
         let source = |set| Source { message: message.name(), set: [system, component, set] };
-        let floating = [1.0, 1.0, MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL];
-        let pressure = |hectopascals| [hectopascals, 0.0, 0.0];
-        let (id, ns, fresh, values, units) = match message {
+        let (id, ns, fresh) = match message {
             Message::HilSensor(seen) => {
-                let fresh = HIL_SENSOR.map(|mask| seen.fields_updated & mask != 0);
-                (
-                    seen.id,
-                    micros(seen.time_usec),
-                    fresh,
-                    floats([seen.gyro, seen.accel, seen.mag, pressure(seen.abs_pressure)]),
-                    Some(floating),
-                )
+                let new = |mask| seen.fields_updated & mask != 0;
+                let fresh = [
+                    new(hil_sensor::GYRO).then(|| triad(SensorKind::Gyro, seen.gyro, 1.0)),
+                    new(hil_sensor::ACCEL).then(|| triad(SensorKind::Accel, seen.accel, 1.0)),
+                    new(hil_sensor::MAG).then(|| triad(SensorKind::Mag, seen.mag, MICROTESLA_A_GAUSS)),
+                    new(ABSOLUTE).then(|| pressure(SensorKind::Baro, seen.abs_pressure)),
+                    new(hil_sensor::DIFF_PRESSURE)
+                        .then(|| pressure(SensorKind::Airspeed, seen.diff_pressure)),
+                ];
+                (seen.id, micros(seen.time_usec), fresh)
             }
             Message::HighresImu(seen) => {
-                let masks =
-                    [highres_imu::GYRO, highres_imu::ACCEL, highres_imu::MAG, highres_imu::ABS_PRESSURE];
-                let fresh = masks.map(|mask| seen.fields_updated & mask != 0);
-                (
-                    seen.id,
-                    micros(seen.time_usec),
-                    fresh,
-                    floats([seen.gyro, seen.accel, seen.mag, pressure(seen.abs_pressure)]),
-                    Some(floating),
-                )
+                let new = |mask| seen.fields_updated & mask != 0;
+                let fresh = [
+                    new(highres_imu::GYRO).then(|| triad(SensorKind::Gyro, seen.gyro, 1.0)),
+                    new(highres_imu::ACCEL).then(|| triad(SensorKind::Accel, seen.accel, 1.0)),
+                    new(highres_imu::MAG).then(|| triad(SensorKind::Mag, seen.mag, MICROTESLA_A_GAUSS)),
+                    new(highres_imu::ABS_PRESSURE).then(|| pressure(SensorKind::Baro, seen.abs_pressure)),
+                    None,
+                ];
+                (seen.id, micros(seen.time_usec), fresh)
             }
             Message::ScaledImu(seen) | Message::ScaledImu2(seen) | Message::ScaledImu3(seen) => {
                 let scaled_imu::Repr { time_boot_ms, accel, gyro, mag, .. } = seen;
-                let milli = [1e-3, 1e-3 * STANDARD_GRAVITY, 1e-3 * MICROTESLA_A_GAUSS, 0.0];
+                let milli = Some([1e-3, 1e-3 * STANDARD_GRAVITY, 1e-3 * MICROTESLA_A_GAUSS]);
                 let ns = Some(i64::from(*time_boot_ms) * 1_000_000);
-                (0, ns, present(*mag), ints([*gyro, *accel, *mag]), Some(milli))
+                (0, ns, counts([*gyro, *accel, *mag], milli))
             }
             Message::RawImu(seen) => {
-                let ns = micros(seen.time_usec);
-                (seen.id, ns, present(seen.mag), ints([seen.gyro, seen.accel, seen.mag]), None)
+                (seen.id, micros(seen.time_usec), counts([seen.gyro, seen.accel, seen.mag], None))
             }
             _ => return None,
         };
-        Some(Inertial { source: source(id), t: ns.map(SimTime), fresh, values, units })
+        Some(Inertial { source: source(id), t: ns.map(SimTime), fresh })
     }
 
     fn is_fresh(&self) -> bool {
-        self.fresh.contains(&true)
+        self.fresh.iter().any(Option::is_some)
     }
 
     fn hand_on(&self, packet: Carrier, each: &mut dyn FnMut(Sample)) {
-        let Inertial { source, t, fresh, values, units } = *self;
-        let fresh = SensorKind::ALL.into_iter().zip(fresh).filter(|(_, fresh)| *fresh);
-        for (kind, _) in fresh {
-            let vector = |units: [f64; 4]| DVec3::from_array(values[kind as usize]) * units[kind as usize];
-            let value = units.map(vector).filter(|value| value.is_finite()).map(Vector::from_vec);
+        let Inertial { source, t, fresh } = *self;
+        for (kind, value) in fresh.into_iter().flatten() {
             each(Sample { kind, source, t, value, packet });
         }
     }
 }
 
+/// Body axes in so many of our units.
+fn triad(kind: SensorKind, values: [f32; 3], unit: f64) -> (SensorKind, Option<Sensed>) {
+    let value = DVec3::from_array(values.map(f64::from)) * unit;
+    (kind, Sensed::Body(Vector::from_vec(value)).known())
+}
+
+fn pressure(kind: SensorKind, hectopascals: f32) -> (SensorKind, Option<Sensed>) {
+    (kind, Sensed::Pressure(f64::from(hectopascals) * PASCALS_A_HECTOPASCAL).known())
+}
+
+/// Gyro, accel and mag of a message in counts, and what a count of each is; without a mask it has the first two, and a
+/// field of exactly nothing is a magnetometer that is not there.
+fn counts(values: [[i16; 3]; 3], units: Option<[f64; 3]>) -> [Option<(SensorKind, Option<Sensed>)>; 5] {
+    let present = |kind: SensorKind| kind != SensorKind::Mag || values[2] != [0; 3];
+    let reading = |kind: SensorKind| {
+        let i = kind as usize;
+        let value = units.map(|units| DVec3::from_array(values[i].map(f64::from)) * units[i]);
+        (kind, value.and_then(|value| Sensed::Body(Vector::from_vec(value)).known()))
+    };
+    let [gyro, accel, mag] = SensorKind::TRIADS.map(|kind| present(kind).then(|| reading(kind)));
+    [gyro, accel, mag, None, None]
+}
+
 /// µs in ns, where that can be said.
 fn micros(us: u64) -> Option<i64> {
     i64::try_from(us).ok()?.checked_mul(1000)
-}
-
-/// A message without a mask has gyro and accel; a field of exactly nothing is a magnetometer that is not there.
-fn present(mag: [i16; 3]) -> [bool; 4] {
-    [true, true, mag != [0; 3], false]
-}
-
-fn floats(values: [[f32; 3]; 4]) -> [[f64; 3]; 4] {
-    values.map(|vector| vector.map(f64::from))
-}
-
-fn ints([gyro, accel, mag]: [[i16; 3]; 3]) -> [[f64; 3]; 4] {
-    [gyro, accel, mag, [0; 3]].map(|vector| vector.map(f64::from))
 }

@@ -6,7 +6,7 @@ use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::MICROTESLA_A_GAUSS;
-use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
 use glam::DVec3;
 use ratetable_protocols::Error;
 use ratetable_protocols::mip::{Decoder, imu};
@@ -54,7 +54,7 @@ fn take(received: Result<imu::Repr, Error>, counts: &mut Counts, each: &mut dyn 
     let mut sample = |kind, values: Option<[f32; 3]>, unit: f64| {
         let Some(values) = values else { return };
         let value = DVec3::from_array(values.map(f64::from)) * unit;
-        let value = value.is_finite().then(|| Vector::from_vec(value));
+        let value = Sensed::Body(Vector::from_vec(value)).known();
         each(Sample { kind, source: Source::only("mip"), t, value, packet: Carrier::default() });
     };
     sample(SensorKind::Gyro, seen.gyro, 1.0);

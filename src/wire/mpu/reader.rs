@@ -5,7 +5,7 @@ use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
-use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
 use ratetable_protocols::Losses;
 use ratetable_protocols::mpu::registers::{self, ST1_DATA_READY, ST2_16_BIT, ST2_OVERFLOW};
 use ratetable_protocols::mpu::{Decoder, Packet, Received, config, mag};
@@ -41,7 +41,7 @@ impl samples::Reader for Reader {
             let carrier = Carrier { lost: Some(losses.lost()), ..Carrier::default() };
             let mut sample = |kind: SensorKind, chip: Option<[f64; 3]>| {
                 let body = |[x, y, z]: [f64; 3]| mounts[kind as usize].to_body(Vector::new(x, y, z));
-                let (source, value) = (Source::only("mpu"), chip.map(body));
+                let (source, value) = (Source::only("mpu"), chip.map(body).map(Sensed::Body));
                 each(Sample { kind, source, t: Some(t), value, packet: carrier });
             };
             match packet {

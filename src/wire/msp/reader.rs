@@ -5,7 +5,7 @@ use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::{Body, Vector};
 use crate::sensor::SensorKind;
 use crate::wire::msp::{ACCEL_SCALE, GYRO_SCALE};
-use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
 use ratetable_protocols::Error;
 use ratetable_protocols::msp::{
     Decoder, Direction, MAX_LEN, Message, Received, api_version, encode, simulator,
@@ -39,7 +39,8 @@ fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut dyn F
         };
         return counts.foreign(&format!("{way} {command}"));
     };
-    let mut sample = |kind, value| {
+    let mut sample = |kind, value: Option<Vector<Body>>| {
+        let value = value.map(Sensed::Body);
         each(Sample { kind, source: Source::only("msp"), t: None, value, packet: Carrier::default() })
     };
     sample(SensorKind::Gyro, Some(body(seen.gyro, 1f64.to_radians() / GYRO_SCALE)));

@@ -2,9 +2,9 @@
 //! programs read too.
 
 use crate::geometry::Axes;
-use crate::sensor::SensorKind;
+use crate::sensor::{SensorKind, Shape};
 use crate::time::SimTime;
-use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
 use glam::DVec3;
 use std::borrow::Cow;
 
@@ -34,14 +34,14 @@ struct Line<'l> {
 
 impl Line<'_> {
     fn kind(&self) -> Option<SensorKind> {
-        SensorKind::ALL.into_iter().find(|kind| kind.name() == self.sensor)
+        SensorKind::from_name(&self.sensor)
     }
 
     /// Whether it has what a line of its sensor has.
     fn is_whole(&self) -> bool {
-        match self.kind() {
-            Some(SensorKind::Baro) => self.pa.is_some(),
-            Some(SensorKind::Gps) => true,
+        match self.kind().map(SensorKind::shape) {
+            Some(Shape::Pressure) => self.pa.is_some(),
+            Some(Shape::Position) => true,
             _ => self.x.is_some() && self.y.is_some() && self.z.is_some(),
         }
     }
@@ -82,19 +82,14 @@ impl Reader {
         self.held.clear();
     }
 
-    /// Bytes held.
-    #[cfg(test)]
-    pub(super) fn held(&self) -> usize {
-        self.held.capacity()
-    }
-
     fn sample(&self, kind: SensorKind, line: &Line<'_>) -> Sample {
-        let value = match kind {
-            SensorKind::Baro => line.pa.map(|pressure| DVec3::new(pressure, 0.0, 0.0)),
-            SensorKind::Gps => None,
-            _ => line.x.zip(line.y).zip(line.z).map(|((x, y), z)| DVec3::new(x, y, z)),
+        let body = |((x, y), z)| Sensed::Body(self.axes.body_in(DVec3::new(x, y, z)));
+        let value = match kind.shape() {
+            Shape::Pressure => line.pa.map(Sensed::Pressure),
+            Shape::Position => None,
+            Shape::Triad => line.x.zip(line.y).zip(line.z).map(body),
         };
-        let value = value.filter(|value| value.is_finite()).map(|value| self.axes.body_in(value));
+        let value = value.and_then(Sensed::known);
         Sample { kind, source: self.source, t: Some(SimTime(line.t_ns)), value, packet: Carrier::default() }
     }
 }
@@ -127,10 +122,23 @@ fn csv(line: &str) -> Option<Line<'_>> {
     let sensor = Cow::Borrowed(cells.next()?);
     let mut number = || cells.next()?.parse::<f64>().ok();
     let mut line = Line { t_ns, sensor, x: None, y: None, z: None, pa: None };
-    if line.kind() == Some(SensorKind::Baro) {
+    if line.kind().map(SensorKind::shape) == Some(Shape::Pressure) {
         line.pa = number();
     } else {
         (line.x, line.y, line.z) = (number(), number(), number());
     }
     Some(line).filter(Line::is_whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use samples::Reader as _;
+
+    #[test]
+    fn a_line_without_an_end_does_not_fill_the_memory() {
+        let mut reader = Reader::csv(Axes::NedFrd);
+        reader.feed(&[b'7'; 1_000_000], &mut Counts::default(), &mut |_| {});
+        assert!(reader.held.capacity() <= 1024, "{}", reader.held.capacity());
+    }
 }

@@ -4,7 +4,7 @@ use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::MICROTESLA_A_GAUSS;
-use crate::wire::samples::{self, Carrier, Counts, Sample, Source};
+use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
 use glam::DVec3;
 use ratetable_protocols::Error;
 use ratetable_protocols::vectornav::{Decoder, Packet};
@@ -33,7 +33,7 @@ fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut dyn FnM
     let t = i64::try_from(seen.time_ns).ok().map(SimTime);
     let mut sample = |kind, values: [f32; 3], unit: f64| {
         let value = DVec3::from_array(values.map(f64::from)) * unit;
-        let value = value.is_finite().then(|| Vector::from_vec(value));
+        let value = Sensed::Body(Vector::from_vec(value)).known();
         each(Sample { kind, source: Source::only("vectornav"), t, value, packet: Carrier::default() });
     };
     sample(SensorKind::Gyro, seen.gyro, 1.0);
