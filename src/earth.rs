@@ -2,16 +2,13 @@
 
 mod atmosphere;
 mod ellipsoid;
+mod field;
 
 pub use atmosphere::{SEA_LEVEL_PRESSURE, density, indicated_airspeed, pressure, pressure_altitude};
+pub use field::magnetic_field;
 
 use crate::geometry::{Nav, Vector};
-use world_magnetic_model::GeomagneticField;
-use world_magnetic_model::time::{Date, Month};
-use world_magnetic_model::uom::si::angle::degree;
-use world_magnetic_model::uom::si::f32::{Angle, Length};
-use world_magnetic_model::uom::si::length::meter;
-use world_magnetic_model::uom::si::magnetic_flux_density::nanotesla;
+use ::time::{Date, Month};
 
 /// Standard gravity, m/s² (CGPM 1901).
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -85,24 +82,6 @@ pub fn normal_gravity(place: Place) -> f64 {
     let at_ellipsoid = EQUATOR * (1.0 + K * s2) / libm::sqrt(1.0 - E2 * s2);
     let h = place.altitude / A;
     at_ellipsoid * (1.0 - 2.0 * (1.0 + F + M - 2.0 * F * s2) * h + 3.0 * h * h)
-}
-
-/// The World Magnetic Model's field (µT) at a place on a day; says why where the model has none.
-pub fn magnetic_field(place: Place, day: Day) -> Result<Vector<Nav>, String> {
-    let date = day.date().ok_or("no such date")?;
-    let field = GeomagneticField::new(
-        Length::new::<meter>(place.altitude as f32),
-        Angle::new::<degree>(place.latitude.to_degrees() as f32),
-        Angle::new::<degree>(place.longitude.to_degrees() as f32),
-        date,
-    )
-    .map_err(|error| error.to_string())?;
-    let microtesla = |nt: f32| f64::from(nt) / 1000.0;
-    Ok(Vector::new(
-        microtesla(field.x().get::<nanotesla>()),
-        microtesla(field.y().get::<nanotesla>()),
-        microtesla(field.z().get::<nanotesla>()),
-    ))
 }
 
 /// How far magnetic north lies east of true north, rad.

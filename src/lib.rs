@@ -20,12 +20,14 @@
 // `eprintln!` panics where standard error is closed or full: `cli::tell` does not.
 #![warn(clippy::print_stderr)]
 
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod clock;
 pub mod dataset;
 pub mod double;
 pub mod earth;
 pub mod effects;
+#[cfg(feature = "filters")]
 pub mod filters;
 pub mod geometry;
 pub mod interrupt;

@@ -1,5 +1,6 @@
 //! Results as data, tables and charts: they read what a run left behind and never reach into one.
 
+#[cfg(feature = "charts")]
 pub mod chart;
 mod heard;
 mod limit;

@@ -1,6 +1,7 @@
 //! Estimates from files: a table with a header, a TUM trajectory or a PX4 ULog, recognised by content.
 
 mod table;
+#[cfg(feature = "ulog")]
 mod ulog;
 
 use super::Packed;
@@ -66,6 +67,8 @@ impl From<TableError> for FileError {
 const READER: &str = "`score` does not read: it reads tables with a header, TUM trajectories and PX4 ULogs";
 /// As many first bytes tell what a file is.
 const HEAD: u64 = 4096;
+/// How every ULog begins.
+const ULOG: &[u8] = b"ULog\x01\x12\x35";
 
 /// Reads estimates. A table or a trajectory is in `axes`; a ULog says of itself that it is in NED-FRD.
 ///
@@ -87,8 +90,14 @@ pub fn read_as(path: &Path, reading: &Reading) -> Result<Recorded, FileError> {
     let mut file = File::open(path).map_err(refused)?;
     let mut head = Vec::new();
     file.by_ref().take(HEAD).read_to_end(&mut head).map_err(refused)?;
-    if head.starts_with(ulog::MAGIC) {
+    if head.starts_with(ULOG) {
+        #[cfg(feature = "ulog")]
         return ulog::read(path);
+        #[cfg(not(feature = "ulog"))]
+        return Err(FileError::Content(format!(
+            "{}: is a ULog, which this build does not read: build it with the feature `ulog`",
+            path.display()
+        )));
     }
     if let Some(kind) = kind_of(&head) {
         return Err(FileError::Content(kind.refusal(&name, READER)));

@@ -14,9 +14,6 @@ use px4_ulog::stream_parser::{DataMessage, Message, SimpleCallbackResult, read_f
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// How every ULog begins.
-pub(super) const MAGIC: &[u8] = b"ULog\x01\x12\x35";
-
 const TOPIC: &str = "vehicle_attitude";
 
 pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
