@@ -17,6 +17,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+//!
+//! # The library's face
+//!
+//! | to | use |
+//! |---|---|
+//! | load a scene, or build one in Rust | [`scene::Plan`], [`scene::Builder`] |
+//! | play it: readings with their truth, in order of time | [`player::Player`] |
+//! | turn readings into packets, and packets back into samples | [`wire::encoder`], [`wire::samples::Samples`] |
+//! | stream over a serial port, pty or socket, in real time | [`link::Link`], [`clock::Precise`], or all of it: [`session::run`] |
+//! | measure a stream | [`listen::Meter`] |
+//! | write a dataset, read one | [`dataset::write()`], [`dataset::read`] |
+//! | score an estimate against the truth | [`score::judge`] |
+//! | study methods and sensors | [`study`] |
+//!
+//! `examples/` has a sensor model of one's own streamed over a pty, and a dataset in memory. Features: `cli` (the
+//! program, on by default), `charts`, `filters`, `ulog`, `wmm`, `parquet`, `mcap`; a library takes
+//! `default-features = false` and those that it uses.
+
 // `eprintln!` panics where standard error is closed or full: `cli::tell` does not.
 #![warn(clippy::print_stderr)]
 
@@ -24,22 +42,23 @@
 pub mod cli;
 pub mod clock;
 pub mod dataset;
-pub mod double;
+mod double;
 pub mod earth;
 pub mod effects;
 #[cfg(feature = "filters")]
 pub mod filters;
 pub mod geometry;
-pub mod interrupt;
-pub mod keys;
+mod interrupt;
+mod keys;
 pub mod link;
 pub mod listen;
 pub mod motion;
+#[doc(hidden)] // For the benchmark of pacing alone.
 pub mod os;
-pub mod parallel;
+mod parallel;
 pub mod player;
 pub mod quantity;
-pub mod random;
+mod random;
 pub mod report;
 pub mod scene;
 pub mod schedule;

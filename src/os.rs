@@ -41,7 +41,7 @@ pub fn widest<R>(work: impl FnOnce() -> R) -> R {
 ///
 /// On the master of a pty this is always 0: what its reader has not read is counted on the slave
 /// ([`unread`]).
-pub fn unsent(file: impl AsFd) -> io::Result<usize> {
+pub(crate) fn unsent(file: impl AsFd) -> io::Result<usize> {
     let mut bytes: libc::c_int = 0;
     // SAFETY: the descriptor is open for as long as `file` is borrowed, and TIOCOUTQ writes one
     // `int` to the address it is given, which is that of a live, exclusively borrowed `int`.
@@ -51,14 +51,14 @@ pub fn unsent(file: impl AsFd) -> io::Result<usize> {
 }
 
 /// Bytes that have arrived on a terminal or a socket and have not been read (`FIONREAD`).
-pub fn unread(file: impl AsFd) -> io::Result<usize> {
+pub(crate) fn unread(file: impl AsFd) -> io::Result<usize> {
     let bytes = rustix::io::ioctl_fionread(file)?;
     Ok(usize::try_from(bytes).unwrap_or(usize::MAX))
 }
 
 /// Whether the process was started with SIGHUP ignored, as `nohup` starts one: the signal's bit of `SigIgn` in
 /// `/proc/self/status`, proc_pid_status(5). Where that cannot be read, it was not.
-pub fn ignores_hang_up() -> bool {
+pub(crate) fn ignores_hang_up() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
@@ -68,7 +68,7 @@ pub fn ignores_hang_up() -> bool {
 /// Puts what `to` refers to behind the descriptor `file`, whose number stays; what was behind it is closed.
 ///
 /// Whoever writes to `file` meanwhile writes to the one or to the other.
-pub fn redirect(file: &OwnedFd, to: &OwnedFd) -> io::Result<()> {
+pub(crate) fn redirect(file: &OwnedFd, to: &OwnedFd) -> io::Result<()> {
     // SAFETY: both descriptors are open while they are borrowed. dup3 replaces what the number of `file` refers to
     // in one step, so it stays a valid descriptor, owned by whom it was.
     let answer = unsafe { libc::dup3(to.as_raw_fd(), file.as_raw_fd(), libc::O_CLOEXEC) };
@@ -76,7 +76,7 @@ pub fn redirect(file: &OwnedFd, to: &OwnedFd) -> io::Result<()> {
 }
 
 /// A descriptor that a task can wait on; it must be non-blocking.
-pub struct Readable(AsyncFd<Arc<OwnedFd>>);
+pub(crate) struct Readable(AsyncFd<Arc<OwnedFd>>);
 
 impl Readable {
     /// Registers `file` with the runtime of the calling task.
@@ -150,7 +150,7 @@ const LOW_LATENCY: libc::c_int = 1 << 13;
 ///
 /// An FTDI adapter otherwise holds received bytes for up to 16 ms. `Unsupported` where the driver
 /// has no such setting, as on a pty.
-pub fn set_low_latency(port: impl AsFd) -> io::Result<()> {
+pub(crate) fn set_low_latency(port: impl AsFd) -> io::Result<()> {
     let port = port.as_fd().as_raw_fd();
     let mut settings = MaybeUninit::<SerialStruct>::zeroed();
     // SAFETY: the descriptor is open while `port` is borrowed by the caller, and TIOCGSERIAL fills

@@ -3,7 +3,7 @@
 //! A text is a number, a fraction (`400/3 Hz`) or a vector of three, then a unit expression.
 //! Whatever spells the same dimension is accepted: `deg/s/√s` and `deg/s^2/rtHz` are one thing,
 //! while rad/s and Hz are not, since angle is a dimension here. Inside, everything is in SI, except
-//! that magnetic fields are in µT and temperatures in °C; values are kept as [`Double`], so that a
+//! that magnetic fields are in µT and temperatures in °C; values are kept as double-doubles, so that a
 //! decimal in degrees loses nothing on its way to radians.
 //!
 //! What a key accepts is its [`Kind`]; every refusal is a [`QuantityError`], which knows where in

@@ -8,6 +8,7 @@
 //! would be right. The plan carries the scene as resolved: every default, preset and drawn value filled in.
 
 mod attached;
+mod build;
 pub mod builtin;
 mod columns;
 mod declared;
@@ -37,6 +38,7 @@ mod target;
 mod vehicle;
 
 pub use attached::Attached;
+pub use build::Builder;
 pub use document::Place;
 pub use drawn::Drawn;
 pub use faults::OutputFault;
