@@ -39,7 +39,7 @@ mod vehicle;
 
 pub use attached::Attached;
 pub use build::Builder;
-pub use document::Place;
+pub use document::Location;
 pub use drawn::Drawn;
 pub use faults::OutputFault;
 pub use fixed_keys::{FIXED_KEYS, SENSOR_KEYS, takes};
@@ -77,7 +77,7 @@ pub struct Plan {
     /// The scene's date, if it has one.
     pub day: Option<Day>,
     /// Limits of the report, such as `sensors.gyro.late_us.p99<200`, each with its place.
-    pub limits: Vec<(String, Place)>,
+    pub limits: Vec<(String, Location)>,
     /// What is true.
     pub trajectory: Trajectory,
     /// What is sensed: gyro, accel, mag, baro, gps, as far as the scene has them.
@@ -306,7 +306,7 @@ impl SceneError {
         let near = suggest::did_you_mean(scene, names);
         let message =
             format!("this is neither a scene file ({why}) nor a built-in scene ({}){near}", names.join(", "));
-        SceneError { mistakes: vec![Mistake { place: Place::whole(scene), message }] }
+        SceneError { mistakes: vec![Mistake { place: Location::whole(scene), message }] }
     }
 }
 

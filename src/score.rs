@@ -29,11 +29,11 @@ pub use align::Align;
 pub use error::AttitudeError;
 pub use figures::{Aligned, DelayKnown, Errors, Figures, Fitted};
 pub use file::{FileError, Reading, Recorded, read, read_as};
-pub use given::{Clock, Delay, Options, Row, Stamp, Timed, Truth};
+pub use given::{Clock, Delay, HeldAt, Options, Row, Timed, Truth};
 pub use judge::{Judged, Readings, Unjudged, judge, judge_series};
 pub use packed::Packed;
 pub use series::Series;
-pub use track::{Track, TrackError};
+pub use track::{AttitudeTrack, TrackError};
 
 #[cfg(test)]
 mod clock_tests;

@@ -22,7 +22,7 @@ mod seconds;
 mod text;
 mod vectornav;
 
-pub use fault::{Fault, FaultKind};
+pub use fault::{PacketFault, PacketFaultKind};
 pub use faults::{Acts, Faults};
 pub use load::load;
 pub use packet::{MAX_PACKET, Packet};

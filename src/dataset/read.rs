@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 /// The attitudes of a dataset.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Recorded {
+pub struct RecordedTruth {
     /// The axes it is written in.
     pub axes: Axes,
     /// Time and attitude (body to nav, North-East-Down and Forward-Right-Down), in order of time.
@@ -35,7 +35,7 @@ pub struct Recorded {
 ///
 /// # Errors
 /// No such file, no manifest, or a column, number or order of times that cannot be.
-pub fn truth(path: &Path) -> Result<Recorded, DatasetError> {
+pub fn truth(path: &Path) -> Result<RecordedTruth, DatasetError> {
     let file = if path.is_dir() { path.join("truth.csv") } else { path.to_path_buf() };
     if path.is_dir()
         && !file.exists()
@@ -55,7 +55,7 @@ pub fn truth(path: &Path) -> Result<Recorded, DatasetError> {
         }
         attitudes.push((t, axes.attitude_in(q)));
     }
-    Ok(Recorded { axes, attitudes })
+    Ok(RecordedTruth { axes, attitudes })
 }
 
 /// For how long a run held the vehicle still before the scene, where the folder has its report.

@@ -8,15 +8,15 @@ use toml::de::{DeTable, DeValue};
 
 /// Where something was written: file, line and column (from 1), or an option of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     source: Arc<str>,
     position: Option<(usize, usize)>,
 }
 
-impl Place {
+impl Location {
     /// A source as a whole, such as `--set gyro.rate=fast`.
-    pub fn whole(source: &str) -> Place {
-        Place { source: source.into(), position: None }
+    pub fn whole(source: &str) -> Location {
+        Location { source: source.into(), position: None }
     }
 
     /// Line and column, where it has them.
@@ -25,13 +25,13 @@ impl Place {
     }
 
     /// This place, `characters` further right.
-    fn right(&self, characters: usize) -> Place {
+    fn right(&self, characters: usize) -> Location {
         let position = self.position.map(|(line, column)| (line, column + characters));
-        Place { position, ..self.clone() }
+        Location { position, ..self.clone() }
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.position {
             Some((line, column)) => write!(f, "{}:{line}:{column}", self.source),
@@ -44,7 +44,7 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
     /// Where.
-    pub place: Place,
+    pub place: Location,
     /// The bad value and what would be right.
     pub message: String,
 }
@@ -94,19 +94,19 @@ pub struct Node {
     /// The value.
     pub value: Value,
     /// Where it begins.
-    pub place: Place,
+    pub place: Location,
     /// Whether a text stands in the source letter for letter, after one quotation mark.
     plain: bool,
 }
 
 impl Node {
     /// A value whose text does not stand in the source letter for letter.
-    pub(super) fn new(value: Value, place: Place) -> Node {
+    pub(super) fn new(value: Value, place: Location) -> Node {
         Node { value, place, plain: false }
     }
 
     /// Where the letter at byte `offset` of this node's text stands.
-    pub fn place_in_text(&self, offset: usize) -> Place {
+    pub fn place_in_text(&self, offset: usize) -> Location {
         match &self.value {
             Value::Text(text) if self.plain => {
                 self.place.right(1 + text.get(..offset).map_or(0, |before| before.chars().count()))
@@ -122,7 +122,7 @@ pub struct Entry {
     /// The key.
     pub key: String,
     /// Where the key stands.
-    pub place: Place,
+    pub place: Location,
     /// Its value.
     pub node: Node,
 }
@@ -131,14 +131,14 @@ pub struct Entry {
 #[derive(Clone, Debug)]
 pub struct Table {
     /// Where it begins.
-    pub place: Place,
+    pub place: Location,
     /// Its entries.
     pub entries: Vec<Entry>,
 }
 
 impl Table {
     /// An empty table at a place.
-    pub fn empty(place: Place) -> Table {
+    pub fn empty(place: Location) -> Table {
         Table { place, entries: Vec::new() }
     }
 
@@ -171,7 +171,7 @@ impl Table {
     /// # Errors
     /// A path that leads through something which is no table.
     pub fn set(&mut self, assignment: &str) -> Result<(), Mistake> {
-        let place = Place::whole(&format!("--set {assignment}"));
+        let place = Location::whole(&format!("--set {assignment}"));
         let wrong = |message: String| Mistake { place: place.clone(), message };
         let Some((path, text)) = assignment.split_once('=') else {
             return Err(wrong("is not KEY=VALUE: write, for example, --set gyro.rate='8 kHz'".into()));
@@ -221,7 +221,7 @@ impl Table {
         Ok(())
     }
 
-    fn entry(&mut self, key: &str, place: &Place) -> &mut Node {
+    fn entry(&mut self, key: &str, place: &Location) -> &mut Node {
         let index = self.entries.iter().position(|entry| entry.key == key).unwrap_or_else(|| {
             let node =
                 Node { value: Value::Table(Table::empty(place.clone())), place: place.clone(), plain: false };
@@ -233,14 +233,14 @@ impl Table {
 }
 
 /// A value of `--set`.
-fn value_of(text: &str, place: &Place) -> Value {
+fn value_of(text: &str, place: &Location) -> Value {
     let document = format!("value = {text}");
     let parsed = Table::parse(&document, "--set").ok();
     let mut value = match parsed.and_then(|table| table.entries.into_iter().next()) {
         Some(entry) if !matches!(entry.node.value, Value::Date(_)) => entry.node.value,
         _ => Value::Text(text.to_string()),
     };
-    fn move_to(value: &mut Value, place: &Place) {
+    fn move_to(value: &mut Value, place: &Location) {
         let nodes: Box<dyn Iterator<Item = &mut Node>> = match value {
             Value::Array(nodes) => Box::new(nodes.iter_mut()),
             Value::Table(table) => Box::new(table.entries.iter_mut().map(|entry| &mut entry.node)),
@@ -292,12 +292,12 @@ impl<'a> Source<'a> {
         format!("this is not TOML: {why}")
     }
 
-    fn place(&self, offset: usize) -> Place {
+    fn place(&self, offset: usize) -> Location {
         let offset = offset.min(self.text.len());
         let line = self.lines.partition_point(|&start| start <= offset);
         let begins = self.lines.get(line.saturating_sub(1)).copied().unwrap_or_default();
         let column = self.text[begins..offset].chars().count() + 1;
-        Place { source: self.name.clone(), position: Some((line, column)) }
+        Location { source: self.name.clone(), position: Some((line, column)) }
     }
 
     fn table(&self, table: &DeTable<'_>, offset: usize) -> Table {

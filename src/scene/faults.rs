@@ -25,7 +25,7 @@ enum On {
 #[derive(Clone, Debug)]
 pub struct OutputFault {
     on: On,
-    fault: wire::Fault,
+    fault: wire::PacketFault,
 }
 
 impl OutputFault {
@@ -42,7 +42,7 @@ impl OutputFault {
             On::To(to) => *to == output.to,
         };
         // A file and a datagram have no pieces.
-        here && (self.fault.kind != wire::FaultKind::Split || output.to.address.is_stream())
+        here && (self.fault.kind != wire::PacketFaultKind::Split || output.to.address.is_stream())
     }
 
     /// Gives each output its faults; returns those that concern none.
@@ -88,13 +88,13 @@ pub(super) fn faults(top: &Section<'_>, sensors: &mut [SensorPlan], outputs: &mu
 
 fn read(section: &Section<'_>, sensors: &mut [SensorPlan], outputs: &[Output], all: &mut Vec<OutputFault>) {
     let of_sensors = sensor::FaultKind::ALL.map(sensor::FaultKind::name);
-    let of_outputs = wire::FaultKind::ALL.map(wire::FaultKind::name);
+    let of_outputs = wire::PacketFaultKind::ALL.map(wire::PacketFaultKind::name);
     if !section.has("kind") {
         section.lacks("a fault needs its kind, such as kind = \"stuck\"".into());
         return section.allow_everything();
     }
     let kind = section.word("kind", &[&of_sensors[..], &of_outputs].concat(), "off");
-    if let Some(kind) = wire::FaultKind::ALL.into_iter().find(|known| known.name() == kind) {
+    if let Some(kind) = wire::PacketFaultKind::ALL.into_iter().find(|known| known.name() == kind) {
         if section.has_quietly("sensor") {
             let kind = kind.name();
             section.mistake("sensor", format!("{kind} is a packet fault: name an `output` or leave it out"));
@@ -131,17 +131,17 @@ fn of_sensor(section: &Section<'_>, kind: sensor::FaultKind, sensors: &mut [Sens
     }
 }
 
-fn of_output(section: &Section<'_>, kind: wire::FaultKind, outputs: &[Output]) -> Option<OutputFault> {
+fn of_output(section: &Section<'_>, kind: wire::PacketFaultKind, outputs: &[Output]) -> Option<OutputFault> {
     let on = on(section);
     let When { start, end, values } = when(section, &kind.keys())?;
-    let fault = OutputFault { on: on?, fault: wire::Fault { kind, start, end, values } };
+    let fault = OutputFault { on: on?, fault: wire::PacketFault { kind, start, end, values } };
     if let Err(error) = fault.fault.check() {
         section.mistake(error.key, &error.message);
     }
     if !outputs.is_empty() && !outputs.iter().enumerate().any(|(i, output)| fault.concerns(i, output)) {
         let list = outputs.iter().enumerate().map(|(i, output)| format!("{i} \"{}\"", output.to));
         let list = list.collect::<Vec<_>>().join(", ");
-        let why = if kind == wire::FaultKind::Split { " that is sent in pieces" } else { "" };
+        let why = if kind == wire::PacketFaultKind::Split { " that is sent in pieces" } else { "" };
         section.mistake("output", format!("matches none of the scene's outputs{why}, which are {list}"));
     }
     Some(fault)

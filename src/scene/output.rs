@@ -109,7 +109,7 @@ pub struct Output {
     /// Whether to start although the baud rate does not carry the packets.
     pub force: bool,
     /// The faults of its packets.
-    pub faults: Vec<wire::Fault>,
+    pub faults: Vec<wire::PacketFault>,
 }
 
 impl Output {

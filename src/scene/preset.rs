@@ -1,6 +1,6 @@
 //! `part = "…"`: what a datasheet fills in, which keys beside it win over, and what the part could not do.
 
-use super::document::{Entry, Node, Place, Table, Value};
+use super::document::{Entry, Location, Node, Table, Value};
 use super::kalibr;
 use super::output_rate;
 use super::parts::{File, Filter, Scale, Settings};
@@ -119,7 +119,7 @@ fn named_filter(section: &mut Section<'_>, settings: &Settings, rate: Option<Rat
 }
 
 /// The filter as a scene writes it.
-fn low_pass(setting: &Filter, place: &Place) -> Node {
+fn low_pass(setting: &Filter, place: &Location) -> Node {
     let node = |value| Node::new(value, place.clone());
     let cut_off = Value::Text(quantity::text_scalar(setting.low_pass, "Hz"));
     if setting.order == 1 {

@@ -1,7 +1,7 @@
 //! What reading a whole scene collects: its mistakes, and what is found on the way.
 
 use super::attached::Attached;
-use super::document::{Mistake, Place};
+use super::document::{Location, Mistake};
 use super::drawn::Drawn;
 use crate::geometry::Axes;
 use std::cell::{Cell, RefCell};
@@ -51,7 +51,7 @@ impl Reader {
     }
 
     /// Notes a mistake.
-    pub fn mistake(&self, place: &Place, message: impl Into<String>) {
+    pub fn mistake(&self, place: &Location, message: impl Into<String>) {
         let mistake = Mistake { place: place.clone(), message: message.into() };
         let mut mistakes = self.mistakes.borrow_mut();
         if !mistakes.contains(&mistake) {

@@ -2,7 +2,7 @@
 //! value written down again for the scene as resolved. Numbers with units are read in `numbers`, and whole lists of
 //! declared keys in `declared`.
 
-use super::document::{Entry, Node, Place, Table, Value};
+use super::document::{Entry, Location, Node, Table, Value};
 use super::reader::Reader;
 use super::suggest;
 use crate::geometry::Axes;
@@ -144,7 +144,7 @@ impl<'r> Section<'r> {
     }
 
     /// Where a key's value stands, or the table if it is absent.
-    pub fn place(&self, key: &'static str) -> Place {
+    pub fn place(&self, key: &'static str) -> Location {
         self.table.get(key).map_or(&self.table.place, |entry| &entry.node.place).clone()
     }
 
@@ -168,7 +168,7 @@ impl<'r> Section<'r> {
     }
 
     /// Notes a mistake at any place.
-    pub(super) fn note(&self, place: &Place, message: String) {
+    pub(super) fn note(&self, place: &Location, message: String) {
         if !self.silent {
             self.reader.mistake(place, message);
         }
@@ -243,7 +243,7 @@ impl<'r> Section<'r> {
     }
 
     /// The strings of an array, each with its place.
-    pub fn texts(&self, key: &'static str) -> Vec<(String, Place)> {
+    pub fn texts(&self, key: &'static str) -> Vec<(String, Location)> {
         let mut texts = Vec::new();
         match self.entry(key).map(|entry| &entry.node.value) {
             None => {}

@@ -6,7 +6,7 @@
 //! earth.gravity = { uniform = ["9.78 m/s^2", "9.83 m/s^2"] }  # drawn for each run
 //! ```
 
-use super::document::{Entry, Mistake, Node, Place, Table, Value};
+use super::document::{Entry, Location, Mistake, Node, Table, Value};
 use super::{Plan, SceneError, source};
 use crate::random;
 use rand::RngExt;
@@ -24,7 +24,7 @@ enum Takes {
 #[derive(Clone, Debug)]
 struct Swept {
     key: String,
-    place: Place,
+    place: Location,
     takes: Takes,
 }
 
@@ -129,7 +129,7 @@ impl Runs {
     pub fn plan(&self, index: u64) -> Result<Plan, SceneError> {
         let (seed, nodes) = self.nodes(index);
         let mut table = self.table.clone();
-        let place = Place::whole(&self.source);
+        let place = Location::whole(&self.source);
         let seed = ("seed", Node::new(Value::Integer(seed.into()), place));
         for (key, node) in self.keys().zip(nodes).chain([seed]) {
             table.put(key, node).map_err(|mistake| SceneError { mistakes: vec![mistake] })?;

@@ -10,7 +10,7 @@ pub type Truth<'a> = &'a dyn Fn(SimTime) -> Option<Attitude>;
 
 /// What is known of the time at which an estimate held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stamp {
+pub enum HeldAt {
     /// The scene's time of the newest sample it rests on, as echoed: exact.
     Sample(SimTime),
     /// Time of the other side's own clock, ns since whenever.
@@ -25,7 +25,7 @@ pub struct Timed {
     /// When it arrived, in scene time; of an estimate in a file, the time that stands beside it.
     pub arrival: SimTime,
     /// When it held, as far as it says.
-    pub stamp: Stamp,
+    pub stamp: HeldAt,
     /// What it says: body to nav, of about unit length.
     pub attitude: Attitude,
 }

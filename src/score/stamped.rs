@@ -1,7 +1,7 @@
 //! Which estimates count, each with a time on one clock.
 
 use super::clock;
-use super::given::{Stamp, Timed};
+use super::given::{HeldAt, Timed};
 use super::series::Series;
 use crate::geometry::Attitude;
 use crate::time::SimTime;
@@ -16,10 +16,10 @@ pub(super) struct Stamped {
 impl Stamped {
     /// Those whose stamps are of the kind that most have, and whose attitude is one.
     pub fn of(estimates: &[Timed]) -> Stamped {
-        let kind = |stamp: Stamp| match stamp {
-            Stamp::Sample(_) => 0,
-            Stamp::Own(_) => 1,
-            Stamp::Arrival => 2,
+        let kind = |stamp: HeldAt| match stamp {
+            HeldAt::Sample(_) => 0,
+            HeldAt::Own(_) => 1,
+            HeldAt::Arrival => 2,
         };
         let count = |of: usize| estimates.iter().filter(|estimate| kind(estimate.stamp) == of).count();
         let most = (0..3).max_by_key(|&of| (count(of), 2 - of)).unwrap_or(0);
@@ -30,9 +30,9 @@ impl Stamped {
         let of: Vec<usize> = (0..estimates.len()).filter(counts).collect();
         let arrivals: Vec<i64> = of.iter().map(|&i| estimates[i].arrival.0).collect();
         let stamp = |&i: &usize| match estimates[i].stamp {
-            Stamp::Sample(t) => t.0,
-            Stamp::Own(t) => t,
-            Stamp::Arrival => estimates[i].arrival.0,
+            HeldAt::Sample(t) => t.0,
+            HeldAt::Own(t) => t,
+            HeldAt::Arrival => estimates[i].arrival.0,
         };
         let stamps: Vec<i64> = of.iter().map(stamp).collect();
         let times = if most == 1 { clock::onto_ours(&stamps, &arrivals).unwrap_or(arrivals) } else { stamps };

@@ -22,7 +22,7 @@ fn late(late: i64, error: impl Fn(f64) -> DVec3) -> Vec<Timed> {
     let estimate = |k: i64| {
         let held = SimTime(3_000_000_000 + 20_000_000 * k);
         let attitude = Attitude::from_quat(exp(error(held.seconds())) * flight(held).q);
-        Timed { arrival: held + SimTime(late), stamp: Stamp::Arrival, attitude }
+        Timed { arrival: held + SimTime(late), stamp: HeldAt::Arrival, attitude }
     };
     (0..1500).map(estimate).collect()
 }
@@ -95,7 +95,7 @@ fn an_echo_makes_the_delay_exact_whatever_the_motion() {
     let estimate = |k: i64| {
         let held = SimTime(k * 10_000_000);
         let arrival = held + SimTime(1_000_000 + k % 3 * 500_000);
-        Timed { arrival, stamp: Stamp::Sample(held), attitude: still(held) }
+        Timed { arrival, stamp: HeldAt::Sample(held), attitude: still(held) }
     };
     let estimates: Vec<_> = (0..900).map(estimate).collect();
     let judged = judge(&known(still), &estimates, &Options::default()).unwrap();
@@ -113,7 +113,7 @@ fn a_clock_of_its_own_takes_the_jitter_of_the_way_out() {
     for estimate in &mut estimates {
         let held = estimate.arrival;
         // 25 ppm fast, 77 s ahead, in whole milliseconds; 5 to 25 ms of way.
-        estimate.stamp = Stamp::Own((77_000_000_000 + held.0 + held.0 / 40_000) / 1_000_000 * 1_000_000);
+        estimate.stamp = HeldAt::Own((77_000_000_000 + held.0 + held.0 / 40_000) / 1_000_000 * 1_000_000);
         let late = random.random_range(5_000_000..25_000_000);
         way += late as f64 * 1e-6 / 1500.0;
         estimate.arrival = held + SimTime(late);
@@ -123,7 +123,7 @@ fn a_clock_of_its_own_takes_the_jitter_of_the_way_out() {
     // Half a millisecond of resolution is 0.01 deg here; the 20 ms of the way would be 0.2.
     assert!(found.errors.rms_deg < 0.03, "{found:?}");
     // Without its clock the way's jitter counts as error.
-    estimates.iter_mut().for_each(|estimate| estimate.stamp = Stamp::Arrival);
+    estimates.iter_mut().for_each(|estimate| estimate.stamp = HeldAt::Arrival);
     assert!(figures(&estimates, Options::default()).errors.rms_deg > 0.1);
 }
 
@@ -145,7 +145,7 @@ fn of_a_log_of_another_clock_rest_alone_needs_no_motion() {
         let held = |k: i64| SimTime(k * 20_000_000);
         let arrival = |k| held(k) + SimTime(900_000_000_000);
         (0..1500)
-            .map(|k| Timed { arrival: arrival(k), stamp: Stamp::Arrival, attitude: truth(held(k)) })
+            .map(|k| Timed { arrival: arrival(k), stamp: HeldAt::Arrival, attitude: truth(held(k)) })
             .collect()
     };
     let still = |_: SimTime| Attitude::from_quat(exp(DVec3::X * 0.2));
@@ -187,7 +187,7 @@ fn of_an_even_motion_no_delay_is_told() {
     for truth in motions {
         let estimate = |k: i64| {
             let arrival = SimTime(k * 20_000_000);
-            Timed { arrival, stamp: Stamp::Arrival, attitude: truth(arrival - SimTime(50_000_000)) }
+            Timed { arrival, stamp: HeldAt::Arrival, attitude: truth(arrival - SimTime(50_000_000)) }
         };
         let estimates: Vec<_> = (200..1500).map(estimate).collect();
         let found = judge(&known(truth), &estimates, &Options::default()).unwrap().figures;
@@ -204,7 +204,7 @@ fn of_a_motion_that_repeats_the_nearest_delay_is_taken() {
     let rock = |t: SimTime| Attitude::from_quat(exp(DVec3::X * 0.4 * libm::sin(10.0 * t.seconds())));
     let estimate = |k: i64| {
         let arrival = SimTime(k * 20_000_000);
-        Timed { arrival, stamp: Stamp::Arrival, attitude: rock(arrival - SimTime(50_000_000)) }
+        Timed { arrival, stamp: HeldAt::Arrival, attitude: rock(arrival - SimTime(50_000_000)) }
     };
     let estimates: Vec<_> = (200..1500).map(estimate).collect();
     let found = judge(&known(rock), &estimates, &Options::default()).unwrap().figures;
@@ -268,7 +268,7 @@ fn where_the_motion_does_not_tell_mistakes_apart_each_is_named() {
     let turn = |t: SimTime| Attitude::from_quat(exp(DVec3::Z * libm::sin(0.5 * t.seconds())));
     let estimate = |k: i64| {
         let arrival = SimTime(k * 20_000_000);
-        Timed { arrival, stamp: Stamp::Arrival, attitude: Attitude::from_quat(turn(arrival).q.conjugate()) }
+        Timed { arrival, stamp: HeldAt::Arrival, attitude: Attitude::from_quat(turn(arrival).q.conjugate()) }
     };
     let estimates: Vec<_> = (0..1500).map(estimate).collect();
     let looks = judge(&known(turn), &estimates, &Options::default()).unwrap().figures.looks.unwrap();

@@ -6,7 +6,7 @@ use crate::time::SimTime;
 
 /// Attitudes at increasing times, on the great circle between neighbours.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Track {
+pub struct AttitudeTrack {
     rows: Series,
     /// Rows further apart than this leave a gap, in which nothing is known, ns.
     gap: i64,
@@ -17,26 +17,26 @@ pub struct Track {
 #[error("{0}")]
 pub struct TrackError(String);
 
-impl Track {
+impl AttitudeTrack {
     /// Of rows in order of time; between any two of them the truth is known.
     ///
     /// # Errors
     /// Fewer than two rows, or one that is not after the row before.
-    pub fn new(rows: impl IntoIterator<Item = (SimTime, Attitude)>) -> Result<Track, TrackError> {
-        Track::of(Series::new(rows.into_iter().map(|(t, attitude)| (t.0, attitude))))
+    pub fn new(rows: impl IntoIterator<Item = (SimTime, Attitude)>) -> Result<AttitudeTrack, TrackError> {
+        AttitudeTrack::of(Series::new(rows.into_iter().map(|(t, attitude)| (t.0, attitude))))
     }
 
     /// The same of a series.
     ///
     /// # Errors
-    /// As of [`Track::new`].
-    pub fn of(rows: Series) -> Result<Track, TrackError> {
+    /// As of [`AttitudeTrack::new`].
+    pub fn of(rows: Series) -> Result<AttitudeTrack, TrackError> {
         if rows.len() < 2 {
             return Err(TrackError(format!("has {} rows, but a truth needs at least two", rows.len())));
         }
         let times = rows.times();
         match times.windows(2).position(|pair| pair[1] <= pair[0]) {
-            None => Ok(Track { rows, gap: i64::MAX }),
+            None => Ok(AttitudeTrack { rows, gap: i64::MAX }),
             Some(i) => Err(TrackError(format!(
                 "row {} has time {}, which is not after {} of the previous row",
                 i + 2,
@@ -48,9 +48,9 @@ impl Track {
 
     /// The same, recorded: between rows that are further apart than a quarter of a second and than five times their
     /// median interval nothing is known.
-    pub fn with_gaps(self) -> Track {
+    pub fn with_gaps(self) -> AttitudeTrack {
         let gap = self.rows.median_interval().unwrap_or(0).saturating_mul(5).max(250_000_000);
-        Track { gap, ..self }
+        AttitudeTrack { gap, ..self }
     }
 
     /// Its first time.
@@ -105,7 +105,7 @@ mod tests {
         let at = |angle: f64| Attitude::from_quat(exp(DVec3::new(0.0, angle, 0.0)));
         // The sign of a row's quaternion is free.
         let rows = vec![(SimTime(10), at(0.1)), (SimTime(30), Attitude::from_quat(-at(0.5).q))];
-        let track = Track::new(rows).unwrap();
+        let track = AttitudeTrack::new(rows).unwrap();
         for (t, angle) in [(0, 0.1), (10, 0.1), (15, 0.2), (20, 0.3), (30, 0.5), (99, 0.5)] {
             assert!(track.at(SimTime(t)).unwrap().angle_to(at(angle)) < 1e-11, "{t}");
         }
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn in_a_gap_of_a_recording_nothing_is_known() {
         let times = (0..100i64).chain(200..300).map(|k| k * 10_000_000);
-        let track = Track::new(times.map(|t| (SimTime(t), Attitude::IDENTITY))).unwrap();
+        let track = AttitudeTrack::new(times.map(|t| (SimTime(t), Attitude::IDENTITY))).unwrap();
         assert!(track.at(SimTime(1_500_000_000)).is_some());
         let track = track.with_gaps();
         for (ms, known) in [(990, true), (991, false), (1500, false), (2000, true), (2005, true)] {
@@ -127,7 +127,7 @@ mod tests {
     fn a_table_out_of_order_is_refused_with_its_row() {
         let rows =
             |times: &[i64]| times.iter().map(|&t| (SimTime(t), Attitude::IDENTITY)).collect::<Vec<_>>();
-        assert!(Track::new(rows(&[5])).unwrap_err().to_string().contains("at least two"));
-        assert!(Track::new(rows(&[5, 6, 6])).unwrap_err().to_string().starts_with("row 3"));
+        assert!(AttitudeTrack::new(rows(&[5])).unwrap_err().to_string().contains("at least two"));
+        assert!(AttitudeTrack::new(rows(&[5, 6, 6])).unwrap_err().to_string().starts_with("row 3"));
     }
 }

@@ -57,9 +57,9 @@ impl Heard {
         let t = self.shared.scene_time(if let Stamp::Sample(t) = stamp { t } else { arrived })?;
         let arrival = self.shared.scene_time(arrived)?;
         let stamp = match stamp {
-            Stamp::Sample(_) => score::Stamp::Sample(t),
-            Stamp::Own(ns) => score::Stamp::Own(ns),
-            Stamp::Arrival => score::Stamp::Arrival,
+            Stamp::Sample(_) => score::HeldAt::Sample(t),
+            Stamp::Own(ns) => score::HeldAt::Own(ns),
+            Stamp::Arrival => score::HeldAt::Arrival,
         };
         self.newest = Some(Off::between(self.plan.trajectory.at(t).attitude, attitude));
         Some(Timed { arrival, stamp, attitude })
@@ -72,7 +72,7 @@ impl Heard {
         let options = score::Options { align, settle, until: played, ..score::Options::default() };
         // Where nothing moves that tells one clock from the other, an estimate holds when it arrives.
         let arrived =
-            || said.iter().map(|it| Timed { stamp: score::Stamp::Arrival, ..*it }).collect::<Vec<_>>();
+            || said.iter().map(|it| Timed { stamp: score::HeldAt::Arrival, ..*it }).collect::<Vec<_>>();
         let judged = score::judge(&truth, said, &options);
         let judged = judged.or_else(|_| score::judge(&truth, &arrived(), &options)).ok();
         let (mut figures, held) = match judged {

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FaultKind {
+pub enum PacketFaultKind {
     /// Packets are missing at random, a `share` of them.
     Drop,
     /// `bits` of a `share` of the packets are flipped.
@@ -25,15 +25,15 @@ pub enum FaultKind {
 /// The longest stall: its packets are kept in memory.
 const LONGEST_STALL: SimTime = SimTime(10 * NANOS);
 
-impl FaultKind {
+impl PacketFaultKind {
     /// Every kind.
-    pub const ALL: [FaultKind; 6] = [
-        FaultKind::Drop,
-        FaultKind::Corrupt,
-        FaultKind::Duplicate,
-        FaultKind::Reorder,
-        FaultKind::Stall,
-        FaultKind::Split,
+    pub const ALL: [PacketFaultKind; 6] = [
+        PacketFaultKind::Drop,
+        PacketFaultKind::Corrupt,
+        PacketFaultKind::Duplicate,
+        PacketFaultKind::Reorder,
+        PacketFaultKind::Stall,
+        PacketFaultKind::Split,
     ];
 
     /// As scenes write it.
@@ -48,16 +48,16 @@ impl FaultKind {
             key("share", Takes::Scalar(Kind::RATIO.signed(Sign::NonNegative)), default, about)
         };
         match self {
-            FaultKind::Drop => vec![share("1 %", "of the packets is missing")],
-            FaultKind::Corrupt => vec![
+            PacketFaultKind::Drop => vec![share("1 %", "of the packets is missing")],
+            PacketFaultKind::Corrupt => vec![
                 share("1 %", "of the packets is hurt"),
                 key("bits", Takes::Whole(1, 64), "1", "flipped in each"),
                 key("hurts", Takes::Word(&["packet", "framing"]), "packet", "what may be hit"),
             ],
-            FaultKind::Duplicate => vec![share("1 %", "of the packets comes twice")],
-            FaultKind::Reorder => vec![share("1 %", "of the packets is overtaken")],
-            FaultKind::Stall => vec![],
-            FaultKind::Split => vec![
+            PacketFaultKind::Duplicate => vec![share("1 %", "of the packets comes twice")],
+            PacketFaultKind::Reorder => vec![share("1 %", "of the packets is overtaken")],
+            PacketFaultKind::Stall => vec![],
+            PacketFaultKind::Split => vec![
                 share("100 %", "of the packets goes out in pieces"),
                 key("pieces", Takes::Whole(2, 16), "2", "of a packet"),
                 key("gap", Takes::Duration, "1 ms", "from piece to piece"),
@@ -68,9 +68,9 @@ impl FaultKind {
 
 /// A fault of an output.
 #[derive(Clone, Debug)]
-pub struct Fault {
+pub struct PacketFault {
     /// What goes wrong.
-    pub kind: FaultKind,
+    pub kind: PacketFaultKind,
     /// From when on.
     pub start: SimTime,
     /// Until when.
@@ -79,7 +79,7 @@ pub struct Fault {
     pub values: Values,
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for PacketFault {
     /// `drop from 2 s to 3 s`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} from {}", self.kind.name(), self.start)?;
@@ -87,7 +87,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl Fault {
+impl PacketFault {
     /// Whether a value cannot be.
     ///
     /// # Errors
@@ -96,7 +96,7 @@ impl Fault {
         if self.values.scalar("share").is_some_and(|share| share > 1.0) {
             return Err(KeyError::new("share", "a share of the packets is at most 100 %"));
         }
-        if self.kind == FaultKind::Stall && self.end - self.start > LONGEST_STALL {
+        if self.kind == PacketFaultKind::Stall && self.end - self.start > LONGEST_STALL {
             let message = format!(
                 "a stall lasts {LONGEST_STALL} at most, for its packets are kept; for a link that is away longer write kind = \"drop\", share = \"100 %\""
             );

@@ -5,7 +5,7 @@
 //! Random ones draw once a packet, from the stream `output/I/fault/N/KIND`: I counts the run's outputs, N the faults
 //! of this one.
 
-use super::fault::{Fault, FaultKind};
+use super::fault::{PacketFault, PacketFaultKind};
 use super::{Packet, Protocol};
 use crate::random::{self, Stream};
 use crate::sensor::ByKind;
@@ -18,7 +18,7 @@ use std::mem;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Acts {
     /// The fault.
-    pub kind: FaultKind,
+    pub kind: PacketFaultKind,
     /// The same with its times, as a person reads it.
     pub what: String,
     /// The packets it acted on, up to the time settled.
@@ -52,13 +52,13 @@ pub struct Faults {
 impl Faults {
     /// Those of the run's output `output`, in the order given but for splits, which are the last thing that happens to
     /// a packet. `None` without any.
-    pub fn new(faults: &[Fault], protocol: Protocol, seed: u64, output: usize) -> Option<Faults> {
-        let faulty = |(n, fault): (usize, &Fault)| {
+    pub fn new(faults: &[PacketFault], protocol: Protocol, seed: u64, output: usize) -> Option<Faults> {
+        let faulty = |(n, fault): (usize, &PacketFault)| {
             let stream = format!("output/{output}/fault/{n}/{}", fault.kind.name());
             Faulty::new(fault, protocol, random::stream(seed, &stream))
         };
         let mut chain: Vec<_> = faults.iter().enumerate().map(faulty).collect();
-        chain.sort_by_key(|faulty| faulty.acts.kind == FaultKind::Split);
+        chain.sort_by_key(|faulty| faulty.acts.kind == PacketFaultKind::Split);
         let (taken, added) = Default::default();
         (!chain.is_empty()).then(|| Faults { chain, taken, added, through: Vec::new(), now: SimTime::ZERO })
     }
@@ -131,8 +131,8 @@ struct Faulty {
 }
 
 impl Faulty {
-    fn new(fault: &Fault, protocol: Protocol, stream: Stream) -> Faulty {
-        let Fault { kind, start, end, values } = fault;
+    fn new(fault: &PacketFault, protocol: Protocol, stream: Stream) -> Faulty {
+        let PacketFault { kind, start, end, values } = fault;
         Faulty {
             start: *start,
             end: *end,
@@ -151,16 +151,16 @@ impl Faulty {
     /// What was held and goes out by `t` (`None`: at the end), it being `now`.
     fn release(&mut self, t: Option<SimTime>, now: SimTime, out: &mut Vec<Packet>) {
         match self.acts.kind {
-            FaultKind::Stall if t.is_none_or(|t| t >= self.end) => {
+            PacketFaultKind::Stall if t.is_none_or(|t| t >= self.end) => {
                 let due = self.end.min(now);
                 out.extend(self.held.drain(..).map(|packet| Packet { due: packet.due.max(due), ..packet }));
             }
-            FaultKind::Split => {
+            PacketFaultKind::Split => {
                 while let Some(rest) = self.held.pop_front_if(|rest| t.is_none_or(|t| rest.due <= t)) {
                     out.push(rest);
                 }
             }
-            FaultKind::Reorder if t.is_none() => out.extend(self.held.drain(..)),
+            PacketFaultKind::Reorder if t.is_none() => out.extend(self.held.drain(..)),
             _ => {}
         }
     }
@@ -174,11 +174,11 @@ impl Faulty {
         added: &mut ByKind<u64>,
     ) {
         let due = packet.due;
-        if self.acts.kind == FaultKind::Split {
+        if self.acts.kind == PacketFaultKind::Split {
             // The next packet of a stream brings the rest of the one before along.
             self.held.clear();
         }
-        if self.acts.kind == FaultKind::Reorder
+        if self.acts.kind == PacketFaultKind::Reorder
             && let Some(overtaken) = self.held.pop_front()
         {
             self.acts.ahead.push_back(due);
@@ -188,33 +188,33 @@ impl Faulty {
             return out.push(packet);
         }
         match self.acts.kind {
-            FaultKind::Drop => {
+            PacketFaultKind::Drop => {
                 for (i, taken) in taken.iter_mut().enumerate() {
                     *taken += packet.samples(i);
                 }
                 out.push(Packet::nothing(due, 0));
             }
-            FaultKind::Corrupt => {
+            PacketFaultKind::Corrupt => {
                 self.corrupt(&mut packet);
                 out.push(packet);
             }
-            FaultKind::Duplicate => {
+            PacketFaultKind::Duplicate => {
                 for kind in packet.carries.iter() {
                     added[kind as usize] += 1;
                 }
                 out.extend([packet, Packet { replaced: ByKind::default(), ..packet }]);
             }
             // Counted when it happens.
-            FaultKind::Reorder => {
+            PacketFaultKind::Reorder => {
                 self.held.push_back(packet);
                 return out.push(Packet::nothing(due, 0));
             }
-            FaultKind::Stall if t.is_none_or(|t| t >= self.end) => return out.push(packet),
-            FaultKind::Stall => {
+            PacketFaultKind::Stall if t.is_none_or(|t| t >= self.end) => return out.push(packet),
+            PacketFaultKind::Stall => {
                 self.held.push_back(packet);
                 out.push(Packet::nothing(due, 0));
             }
-            FaultKind::Split => {
+            PacketFaultKind::Split => {
                 packet.piece = packet.len.div_ceil(self.pieces as u16);
                 let later = |i: u64| SimTime(due.0.saturating_add(self.gap.0.saturating_mul(i as i64)));
                 let rest = (1..self.pieces).map(|i| Packet::nothing(later(i), packet.piece));
@@ -226,7 +226,7 @@ impl Faulty {
     }
 
     fn hits(&mut self) -> bool {
-        self.acts.kind == FaultKind::Stall || self.stream.random::<f64>() < self.share
+        self.acts.kind == PacketFaultKind::Stall || self.stream.random::<f64>() < self.share
     }
 
     /// Flips bits, no bit twice.

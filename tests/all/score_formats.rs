@@ -2,7 +2,7 @@
 
 #![cfg(all(feature = "parquet", feature = "mcap"))]
 
-use ratetable::dataset::read::{self, Recorded};
+use ratetable::dataset::read::{self, RecordedTruth};
 use ratetable::sensor::SensorKind;
 use serde_json::Value;
 use std::fs;
@@ -51,7 +51,7 @@ fn score(dir: &Path, more: &[&str]) -> (Value, String, Option<i32>) {
 
 /// Attitudes and readings are the same to the last bit, but for the field where it went through teslas.
 fn same(a: &Path, b: &Path, exactly: bool) {
-    let [one, other]: [Recorded; 2] = [a, b].map(|dir| read::truth(dir).unwrap());
+    let [one, other]: [RecordedTruth; 2] = [a, b].map(|dir| read::truth(dir).unwrap());
     assert_eq!(one, other, "{}", b.display());
     assert!(one.attitudes.len() > 1000);
     for kind in SensorKind::TRIADS {

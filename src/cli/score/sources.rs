@@ -7,7 +7,7 @@ use crate::dataset::read as stored;
 use crate::filters::{self, FILTERS, FilterKind, SIX, Stream, Streams};
 use crate::geometry::Axes;
 use crate::scene::{Plan, nearest};
-use crate::score::{self, Clock, Reading, Recorded, Series, Track};
+use crate::score::{self, AttitudeTrack, Clock, Reading, Recorded, Series};
 use crate::sensor::SensorKind;
 use crate::table::{TimeUnit, Times};
 use crate::time::SimTime;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// What estimates are set against.
 pub(super) struct Truth {
-    pub track: Track,
+    pub track: AttitudeTrack,
     pub axes: Axes,
     /// For how long before it the vehicle was held still, where a run's report says so.
     pub rest: SimTime,
@@ -30,7 +30,7 @@ pub(super) struct Truth {
 
 /// The truth as it was read.
 enum Read {
-    Dataset(Track, Axes),
+    Dataset(AttitudeTrack, Axes),
     File(Box<Recorded>),
 }
 
@@ -98,7 +98,8 @@ fn truth(path: &Path, arguments: &Arguments) -> Result<Read, Refusal> {
         return Ok(Read::File(Box::new(score::read_as(path, &reading(arguments, Axes::default()))?)));
     }
     let truth = stored::truth(path)?;
-    let track = Track::new(truth.attitudes).map_err(|why| Refusal(format!("{}: {why}", path.display())))?;
+    let track =
+        AttitudeTrack::new(truth.attitudes).map_err(|why| Refusal(format!("{}: {why}", path.display())))?;
     Ok(Read::Dataset(track, truth.axes))
 }
 
@@ -119,7 +120,7 @@ fn settled(
                 return Err(refuse(format!("{why}: a truth has one clock; cut the file there")));
             }
             let (series, remarks) = timed(*recorded, unit, None).map_err(refuse)?;
-            (Track::of(series).map_err(|why| refuse(why.to_string()))?.with_gaps(), remarks)
+            (AttitudeTrack::of(series).map_err(|why| refuse(why.to_string()))?.with_gaps(), remarks)
         }
     };
     let rest = folder.as_deref().and_then(stored::rest).unwrap_or(SimTime::ZERO);

@@ -7,7 +7,7 @@ use super::mcap;
 #[cfg(feature = "parquet")]
 use super::parquet;
 use super::rows::{Rows, What};
-use super::{Recorded, axes};
+use super::{RecordedTruth, axes};
 use super::{mat, npy, tum};
 use crate::geometry::{Body, Vector};
 use crate::sensor::SensorKind;
@@ -45,7 +45,7 @@ pub(super) fn lists(folder: &Path, kind: SensorKind) -> bool {
 }
 
 /// The attitudes of a dataset without `truth.csv`; `None` if no other format has them either.
-pub(super) fn truth(folder: &Path) -> Result<Option<Recorded>, DatasetError> {
+pub(super) fn truth(folder: &Path) -> Result<Option<RecordedTruth>, DatasetError> {
     let Some((file, rows)) = rows(folder, What::Truth)? else { return Ok(None) };
     let axes = axes(&file)?;
     let mut attitudes = Vec::with_capacity(rows.times.len());
@@ -59,7 +59,7 @@ pub(super) fn truth(folder: &Path) -> Result<Option<Recorded>, DatasetError> {
         }
         attitudes.push((SimTime(*t), axes.attitude_in(q)));
     }
-    Ok(Some(Recorded { axes, attitudes }))
+    Ok(Some(RecordedTruth { axes, attitudes }))
 }
 
 /// One sensor's readings of a dataset without its CSV; `None` if no other format has them either.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::{Attitude, Euler};
-use crate::score::{Stamp, Timed};
+use crate::score::{HeldAt, Timed};
 use crate::time::SimTime;
 
 fn attitude(k: i64) -> Attitude {
@@ -24,8 +24,11 @@ fn rows(header: &str, row: impl Fn(i64) -> String) -> String {
 /// What is recorded, with its times in the likeliest unit.
 fn timed(recorded: &Recorded) -> Vec<Timed> {
     let times = recorded.times.in_ns(recorded.times.guess().0).unwrap();
-    let one =
-        |(t, q): (i64, &Packed)| Timed { arrival: SimTime(t), stamp: Stamp::Arrival, attitude: q.attitude() };
+    let one = |(t, q): (i64, &Packed)| Timed {
+        arrival: SimTime(t),
+        stamp: HeldAt::Arrival,
+        attitude: q.attitude(),
+    };
     times.into_iter().zip(&recorded.attitudes).map(one).collect()
 }
 
@@ -33,7 +36,7 @@ fn same(recorded: &Recorded, step: i64) {
     assert_eq!(timed(recorded).len(), 10);
     for (k, estimate) in timed(recorded).iter().enumerate() {
         let k = k as i64;
-        assert_eq!((estimate.arrival.0, estimate.stamp), (k * step, Stamp::Arrival));
+        assert_eq!((estimate.arrival.0, estimate.stamp), (k * step, HeldAt::Arrival));
         assert!(estimate.attitude.angle_to(attitude(k)) < 1e-12, "{k}");
     }
 }

@@ -188,9 +188,9 @@ pub fn converse(
     let answers = table.answers.iter().map(|(estimate, us)| Timed {
         arrival: in_scene(*us),
         stamp: match estimate.stamp {
-            Stamp::Own(ns) => score::Stamp::Own(ns),
-            Stamp::Sample(t) => score::Stamp::Sample(t),
-            Stamp::Arrival => score::Stamp::Arrival,
+            Stamp::Own(ns) => score::HeldAt::Own(ns),
+            Stamp::Sample(t) => score::HeldAt::Sample(t),
+            Stamp::Arrival => score::HeldAt::Arrival,
         },
         attitude: estimate.attitude,
     });
@@ -225,7 +225,7 @@ pub fn own(record: &Record, scene_us: u64) -> Vec<Timed> {
             let [w, x, y, z] = moment.attitude;
             Timed {
                 arrival: SimTime((moment.t_us - scene_us) as i64 * 1000),
-                stamp: score::Stamp::Arrival,
+                stamp: score::HeldAt::Arrival,
                 attitude: Attitude::from_quat(DQuat::from_xyzw(x, y, z, w)),
             }
         })
