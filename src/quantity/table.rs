@@ -13,8 +13,6 @@ const TEMPERATURE: Dimension = Dimension::NONE.with(Base::Temperature, 2);
 const GYRO_DENSITY: Dimension = ANGLE.with(Base::Time, -1);
 const ACCEL_DENSITY: Dimension = LENGTH.with(Base::Time, -3);
 const MAG_DENSITY: Dimension = FIELD.with(Base::Time, 1);
-/// The dimension of a resolution in bits.
-
 const PRESSURE: Dimension = Dimension::NONE.with(Base::Mass, 2).with(Base::Length, -2).with(Base::Time, -4);
 
 /// Every way to give a step: per count, counts per unit, the step alone, bits.

@@ -494,7 +494,7 @@ fn a_stream_joined_midway_is_not_damaged_and_has_values_once_they_have_a_scale()
         assert_eq!((counts.joined_midway, counts.damaged, counts.lost), (1, 0, 0), "{protocol:?}");
         let blind = samples.iter().filter(|sample| sample.value.is_none()).count();
         let before: usize = packets[1..second].iter().map(|packet| packet.carries.len()).sum();
-        let expected = if *protocol == Protocol::Mpu { before as usize } else { 0 };
+        let expected = if *protocol == Protocol::Mpu { before } else { 0 };
         assert_eq!(blind, expected, "counts without a config have no unit");
     }
 }
