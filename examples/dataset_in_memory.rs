@@ -2,6 +2,8 @@
 //!
 //! `cargo run --example dataset_in_memory`
 
+#![expect(clippy::print_stdout, reason = "an example says what it found")]
+
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::Builder;
 use ratetable::sensor::SensorKind;

@@ -2,6 +2,8 @@
 //!
 //! `cargo run --example stream_own_sensor`
 
+#![expect(clippy::print_stdout, reason = "an example says what it found")]
+
 use ratetable::clock::{Clock, Policy, Precise, WallClock};
 use ratetable::geometry::Vector;
 use ratetable::link::{Address, Link, Sent};

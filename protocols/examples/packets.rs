@@ -3,6 +3,8 @@
 //!
 //! `cargo run -p ratetable-protocols --example packets`
 
+#![expect(clippy::print_stdout, reason = "an example says what it found")]
+
 use ratetable_protocols::mpu::{self, Decoder, Packet, gyro};
 
 /// A gyroscope's packet into a buffer; its length.
