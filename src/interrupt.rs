@@ -3,6 +3,17 @@
 //! The first of them lets work end cleanly: what is there is written, what was made for the while is removed. A second
 //! Ctrl-C ends the program at once. SIGHUP is left alone where the program was started to outlive its terminal, as by
 //! `nohup`.
+//!
+//! ```
+//! use std::sync::atomic::Ordering;
+//!
+//! let stop = ratetable::interrupt::on_interrupt();
+//! let mut done = 0;
+//! while done < 3 && !stop.load(Ordering::Relaxed) {
+//!     done += 1;
+//! }
+//! assert_eq!(done, 3);
+//! ```
 
 use crate::os;
 use std::io;

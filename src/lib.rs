@@ -48,7 +48,7 @@ pub mod effects;
 #[cfg(feature = "filters")]
 pub mod filters;
 pub mod geometry;
-mod interrupt;
+pub mod interrupt;
 mod keys;
 pub mod link;
 pub mod listen;

@@ -171,7 +171,7 @@ impl Uses {
     }
 }
 
-fn is_for_tests(attributes: &[syn::Attribute]) -> bool {
+pub(super) fn is_for_tests(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let is_test = |tokens: &syn::MetaList| {
             tokens.tokens.to_string().split(|c: char| !c.is_alphanumeric()).any(|word| word == "test")
@@ -290,7 +290,7 @@ fn breaches(file: &Path, text: &str) -> Vec<Breach> {
     found
 }
 
-fn sources() -> Vec<(PathBuf, String)> {
+pub(super) fn sources() -> Vec<(PathBuf, String)> {
     fn collect(folder: &Path, root: &Path, into: &mut Vec<(PathBuf, String)>) {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();

@@ -5,6 +5,7 @@ mod allan;
 mod architecture;
 mod auto;
 mod check;
+mod circles;
 mod clocks;
 mod cluster;
 mod controllers;
