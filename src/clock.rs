@@ -1,4 +1,12 @@
 //! Wall and virtual clocks: the only place that knows the time or sleeps until it.
+//!
+//! ```
+//! use ratetable::clock::{Clock, VirtualClock};
+//!
+//! let mut clock = VirtualClock::default();
+//! clock.wait_until(5_000_000);
+//! assert_eq!(clock.now(), 5_000_000);
+//! ```
 
 mod margin;
 mod precise;

@@ -1,4 +1,13 @@
 //! Gravity, magnetic field and pressure at a place, and the places that are some metres away.
+//!
+//! ```
+//! use ratetable::earth::{Place, density, normal_gravity, pressure};
+//!
+//! let gravity = normal_gravity(Place { latitude: 45f64.to_radians(), ..Place::ORIGIN });
+//! assert!((gravity - 9.8062).abs() < 1e-4);
+//! assert!((pressure(1000.0, 101_325.0) - 89_875.0).abs() < 10.0);
+//! assert!((density(0.0, 101_325.0) - 1.225).abs() < 1e-4);
+//! ```
 
 mod atmosphere;
 mod ellipsoid;

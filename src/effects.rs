@@ -9,6 +9,14 @@
 //! To add an effect: a constant [`EffectKind`] in one of the files beside this one (or a new one), and its line in
 //! [`EFFECTS`]. An error term of `sensor` without an entry is still listed: its size is then measured, by building
 //! the sensor with and without it.
+//!
+//! ```
+//! use ratetable::{effects::effects, scene::Plan};
+//!
+//! let plan = Plan::load("still", &[])?;
+//! assert!(!effects(&plan).is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod datasheet;
 mod earth;

@@ -3,6 +3,14 @@
 //! Each has a file that brings its axes, units and start to ours: vectors in the body's axes (Forward-Right-Down),
 //! attitude from there to North-East-Down. All start from the same first readings, take a reading when it is due, and
 //! run with the defaults of their crates.
+//!
+//! ```
+//! use ratetable::filters::from_name;
+//!
+//! let (filter, with_mag) = from_name("vqf-6d").ok_or("no such filter")?;
+//! assert_eq!((filter.name, with_mag), ("vqf", false));
+//! # Ok::<(), &str>(())
+//! ```
 
 mod complementary;
 mod fusion;

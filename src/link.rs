@@ -8,6 +8,15 @@
 //! Every kind of link is one file of the same shape: its line in the table, the address it reads,
 //! how it is opened, whom it waits for at the start and at the end, then its two halves.
 //! [`SCHEMES`] lists them. A link that reaches beyond this machine does so only because an address was given.
+//!
+//! ```
+//! use ratetable::link::Address;
+//!
+//! let address: Address = "/dev/ttyACM0,115200".parse()?;
+//! assert_eq!(address.baud(), Some(115_200));
+//! assert!("ttyACM0".parse::<Address>().is_err(), "the message says: did you mean /dev/ttyACM0?");
+//! # Ok::<(), ratetable::link::LinkError>(())
+//! ```
 
 mod address;
 mod baud;

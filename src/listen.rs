@@ -2,6 +2,18 @@
 //!
 //! [`Meter`] is the pure core: bytes and when they arrived in, rates, intervals, losses and damage out. [`listen`]
 //! feeds it from a link until the sender leaves, the time is over or the user ends it.
+//!
+//! ```
+//! use ratetable::{listen::Meter, wire::Protocol};
+//!
+//! let mut meter = Meter::new(Protocol::Csv);
+//! for k in 0..11 {
+//!     let line = format!("{},gyro,0,0,0.1\n", k * 10_000_000);
+//!     meter.arrived(line.as_bytes(), Some(k * 10_000_000));
+//! }
+//! meter.finish();
+//! assert_eq!((meter.counts().packets, meter.counts().damaged), (11, 0));
+//! ```
 
 mod live;
 mod meter;

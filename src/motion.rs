@@ -4,6 +4,18 @@
 //! form, or where there is none from nodes solved once to 10⁻¹⁰ degrees, and never accumulated from samples: t may be
 //! asked in any order and an hour at full scale loses nothing.
 //! To add a kind: one file beside this one and one line in [`KINDS`].
+//!
+//! ```
+//! use ratetable::{scene::Builder, sensor::SensorKind, time::SimTime};
+//!
+//! let plan = Builder::new("turn")
+//!     .motion("rotate", &[("yaw", "20 deg/s"), ("duration", "5 s")])
+//!     .sensor(SensorKind::Gyro, &[("rate", "1 Hz")])
+//!     .build()?;
+//! let truth = plan.trajectory.at(SimTime(2_500_000_000));
+//! assert!((truth.rate.v.z - 20f64.to_radians()).abs() < 1e-15);
+//! # Ok::<(), ratetable::scene::SceneError>(())
+//! ```
 
 mod circle;
 mod cone;

@@ -2,6 +2,19 @@
 //!
 //! No clock, no I/O, no threads. The truth is evaluated once a distinct tick; each sensor due then gets its
 //! error-free reading from it and makes its own from that. Where blocks begin changes nothing.
+//!
+//! ```
+//! use ratetable::{player::{BLOCK, Player}, scene::Plan, time::SimTime};
+//!
+//! let plan = Plan::load("still", &[])?;
+//! let mut readings = 0;
+//! Player::new(&plan, SimTime(1_000_000_000), BLOCK).play(|moment| {
+//!     readings += moment.readings.len();
+//!     Ok::<(), std::convert::Infallible>(())
+//! })?;
+//! assert!(readings > 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod feed;
 

@@ -8,6 +8,16 @@
 //!
 //! What a key accepts is its [`Kind`]; every refusal is a [`QuantityError`], which knows where in
 //! the text the trouble is.
+//!
+//! ```
+//! use ratetable::quantity::{Kind, rate};
+//!
+//! assert_eq!(rate("400/3 Hz")?, (400, 3));
+//! let value = Kind::ANGULAR_RATE.scalar("180 deg/s")?;
+//! assert!((value.to_f64() - std::f64::consts::PI).abs() < 1e-15);
+//! assert!(Kind::ANGULAR_RATE.scalar("180 m").is_err());
+//! # Ok::<(), ratetable::quantity::QuantityError>(())
+//! ```
 
 mod exact;
 mod expression;

@@ -1,4 +1,13 @@
 //! Results as data, tables and charts: they read what a run left behind and never reach into one.
+//!
+//! ```
+//! use ratetable::report::Limit;
+//!
+//! let limit: Limit = "attitude.rms_deg<0.5".parse()?;
+//! assert!(limit.broken(&serde_json::json!({ "attitude": { "rms_deg": 0.2 } })).is_none());
+//! assert!(limit.broken(&serde_json::json!({ "attitude": { "rms_deg": 0.7 } })).is_some());
+//! # Ok::<(), ratetable::report::LimitError>(())
+//! ```
 
 #[cfg(feature = "charts")]
 pub mod chart;

@@ -1,4 +1,12 @@
 //! Which sensors are due when: every distinct tick in order, exact.
+//!
+//! ```
+//! use ratetable::{schedule::{Schedule, Ticks}, time::{Rate, SimTime}};
+//!
+//! let ticks = [Rate::hz(4), Rate::hz(2)].map(|rate| Ticks { rate, phase: SimTime::ZERO });
+//! let due: Vec<u32> = Schedule::new(ticks, SimTime(1_000_000_000)).map(|due| due.sensors).collect();
+//! assert_eq!(due, [0b11, 0b01, 0b11, 0b01]);
+//! ```
 
 use crate::time::{Rate, SimTime};
 

@@ -3,6 +3,22 @@
 //! [`judge`] takes a whole series of estimates: it finds when each of them held (by the echo of a sample's time, or by
 //! the delay at which the motion agrees best), splits the error into inclination and heading ([`AttitudeError`]), and
 //! where the error is large tries the usual mistakes of axes, order and sign, so that the report can name one.
+//!
+//! ```
+//! use ratetable::geometry::Attitude;
+//! use ratetable::score::{HeldAt, Options, Timed, judge};
+//! use ratetable::time::SimTime;
+//!
+//! // A vehicle that stands, and an estimate that is right.
+//! let truth = |_| Some(Attitude::IDENTITY);
+//! let estimates = [1, 2, 3].map(|s| {
+//!     let t = SimTime(s * 1_000_000_000);
+//!     Timed { arrival: t, stamp: HeldAt::Sample(t), attitude: Attitude::IDENTITY }
+//! });
+//! let judged = judge(&truth, &estimates, &Options { until: SimTime(4_000_000_000), ..Options::default() })?;
+//! assert_eq!(judged.figures.errors.rms_deg, 0.0);
+//! # Ok::<(), ratetable::score::Unjudged>(())
+//! ```
 
 mod align;
 mod bench;

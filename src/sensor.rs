@@ -4,6 +4,17 @@
 //! term that is absent costs nothing. The chain is truth → what disturbs the signal → biases →
 //! white noise → range → resolution → reading.
 //! To add a term: one file beside this one and one line in [`TERMS`].
+//!
+//! ```
+//! use ratetable::{scene::Builder, sensor::SensorKind};
+//!
+//! let plan = Builder::new("still")
+//!     .set("duration", "1 s")
+//!     .sensor(SensorKind::Gyro, &[("rate", "1 kHz"), ("noise_density", "0.01 deg/s/rtHz"), ("range", "500 deg/s")])
+//!     .build()?;
+//! assert_eq!(plan.build(&plan.sensors[0]).terms(), ["white_noise", "range"]);
+//! # Ok::<(), ratetable::scene::SceneError>(())
+//! ```
 
 mod bias;
 mod bias_instability;

@@ -3,6 +3,14 @@
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
 //! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory. All give rows for a table; time
 //! comes in as an argument.
+//!
+//! ```
+//! use ratetable::{scene::Plan, study::allan};
+//!
+//! let points = allan::run(&Plan::load("still", &[])?, allan::Effort::QUICK);
+//! assert!(!points.is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod accuracy;
 pub mod allan;

@@ -2,6 +2,14 @@
 //!
 //! Time is an integer count of nanoseconds and a rate is a fraction, so the k-th tick is computed from k and
 //! never accumulated: it is exact after days, at 1 kHz as at 1125 Hz or 400/3 Hz.
+//!
+//! ```
+//! use ratetable::time::{Rate, SimTime};
+//!
+//! let rate = Rate::new(400, 3).ok_or("no rate")?;
+//! assert_eq!(rate.tick(400), SimTime(3_000_000_000), "exact after days, too");
+//! # Ok::<(), &str>(())
+//! ```
 
 use crate::double::Double;
 use std::fmt;

@@ -3,6 +3,31 @@
 //! Each protocol is one file with an [`Encoder`]; what comes back is the business of `dialogue`. Conversion from the
 //! program's axes (Forward-Right-Down, SI, µT) to a protocol's own happens here and nowhere else.
 //! To add a protocol: its payloads in the `protocols` crate, its folder beside this file, one line in `protocol.rs`.
+//!
+//! ```
+//! use ratetable::player::{BLOCK, Player};
+//! use ratetable::scene::Plan;
+//! use ratetable::wire::samples::Samples;
+//! use ratetable::wire::{self, Now, Options, Protocol, Setup, dialogue::Peer};
+//!
+//! let plan = Plan::load("still", &["duration=1 s".into()])?;
+//! let setup = Setup {
+//!     sensors: &plan.sensors,
+//!     axes: plan.axes,
+//!     day: plan.day,
+//!     options: Options::default(),
+//!     peer: Peer::default(),
+//! };
+//! let (mut encoder, mut packets) = (wire::encoder(Protocol::Mavlink, &setup), Vec::new());
+//! Player::new(&plan, plan.duration, BLOCK).play(|moment| {
+//!     encoder.encode(&Now { t: moment.t, truth: moment.truth, readings: moment.readings }, &mut packets);
+//!     Ok::<(), std::convert::Infallible>(())
+//! })?;
+//! let (mut reader, mut samples) = (Samples::new(Protocol::Mavlink), 0);
+//! packets.iter().for_each(|packet| reader.feed(packet.bytes(), |_| samples += 1));
+//! assert!(samples > 0 && reader.counts().damaged == 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod dialogue;
 mod fault;
