@@ -44,6 +44,7 @@ pub struct Job {
 
 /// What happens meanwhile.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Event<'a> {
     /// Something the user should know.
     Notice(String),
@@ -77,6 +78,7 @@ pub struct Heard {
 
 /// Why nothing could be heard.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ListenError {
     /// The link could not be opened or broke.
     #[error(transparent)]

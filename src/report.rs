@@ -33,6 +33,7 @@ use std::collections::BTreeMap;
 
 /// A run's report, one JSON object.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// The program's version.
     pub version: String,

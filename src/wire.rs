@@ -77,6 +77,7 @@ pub enum Layout {
 
 /// A flight controller that wants a protocol spoken its own way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Controller {
     /// PX4 on its board, in HITL: time is arrival.
     Px4,

@@ -12,6 +12,7 @@ use super::endpoint::Endpoint;
 /// `tcpout:ADDR:PORT`, `udpin:[ADDR:]PORT`, `udpout:ADDR:PORT`, `file:PATH`, and `-` for standard
 /// output. What [`Display`](fmt::Display) writes reads back to the same address.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Address {
     /// A new pseudo terminal, published at `path` where one is given.
     Pty {

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 /// The report of somebody's stream, one JSON object.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct HeardReport {
     /// The program's version.
     pub version: String,

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// A run's report with the same figures for the other end and for a bare timer.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct TimingReport {
     /// As of any run.
     #[serde(flatten)]

@@ -10,6 +10,7 @@ pub type Truth<'a> = &'a dyn Fn(SimTime) -> Option<Attitude>;
 
 /// What is known of the time at which an estimate held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum HeldAt {
     /// The scene's time of the newest sample it rests on, as echoed: exact.
     Sample(SimTime),

@@ -19,6 +19,7 @@ use std::fmt;
 
 /// What is sensed. The order is that in which readings due together go out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum SensorKind {
     /// Angular rate, rad/s.
     Gyro,
@@ -43,6 +44,7 @@ pub type ByKind<T> = [T; SensorKind::COUNT];
 
 /// What a reading is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Shape {
     /// Three body axes.
     Triad,
@@ -53,6 +55,7 @@ pub enum Shape {
 }
 
 /// What of the truth a kind senses.
+#[non_exhaustive]
 pub enum Senses {
     /// The angular rate of an instant, rad/s.
     Rate,

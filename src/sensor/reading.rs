@@ -23,6 +23,7 @@ pub struct Reading {
 
 /// A quantity as a sensor measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Measurement {
     /// Of a gyroscope (rad/s), an accelerometer (m/s²) or a magnetometer (µT), in body axes (Forward-Right-Down).
     Triad(Measured<Vector<Body>>),

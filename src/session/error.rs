@@ -6,6 +6,7 @@ use std::time::Duration;
 
 /// Why nothing could be run.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SessionError {
     /// A link could not be opened or broke while waiting.
     #[error(transparent)]

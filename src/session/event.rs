@@ -6,6 +6,7 @@ use std::time::Duration;
 
 /// What happens meanwhile.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Event<'a> {
     /// Something the user should know.
     Notice(String),

@@ -8,6 +8,7 @@ use crate::time::SimTime;
 
 /// What the packets look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Protocol {
     /// Register images of an MPU-6050 or MPU-9250 in COBS frames.
     Mpu,

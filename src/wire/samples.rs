@@ -36,6 +36,7 @@ pub struct Sample {
 
 /// What a sample says.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Sensed {
     /// Of a gyroscope (rad/s), an accelerometer (m/s²) or a magnetometer (µT), in body axes.
     Body(Vector<Body>),
