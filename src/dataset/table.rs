@@ -131,8 +131,9 @@ impl Row {
 pub(super) fn reading(axes: Axes, reading: &Reading) -> Row {
     match &reading.measurement {
         Measurement::Triad(Measured { value, truth, bias }) => {
-            let vector = |v: &Vector<Body>| axes.body_out(*v).to_array();
-            Row::of([value, truth, bias].map(vector).into_iter().flatten())
+            let [[x, y, z], [tx, ty, tz], [bx, by, bz]] =
+                [value, truth, bias].map(|v: &Vector<Body>| axes.body_out(*v).to_array());
+            Row { values: [x, y, z, tx, ty, tz, bx, by, bz, 0.0, 0.0, 0.0], len: 9 }
         }
         Measurement::Pressure(Measured { value, truth, bias }) => {
             let derived = reading.kind.row().table.derived.as_ref().map(|derived| (derived.of)(*value));

@@ -207,7 +207,9 @@ impl Lane {
     /// Samples that newer ones replaced before this packet are dropped, whatever becomes of it.
     fn forget_replaced<C: Clock>(&mut self, packet: &Packet, pace: &Pace<C>) {
         let lost = self.tally.replaced(packet);
-        pace.shared.dropped.fetch_add(lost, Ordering::Relaxed);
+        if lost > 0 {
+            pace.shared.dropped.fetch_add(lost, Ordering::Relaxed);
+        }
     }
 
     /// Writes the next reply; what came of it.

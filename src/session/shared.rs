@@ -2,6 +2,7 @@
 
 use crate::time::SimTime;
 use crate::wire::Packet;
+use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -16,11 +17,24 @@ pub(super) struct Item {
     pub packet: Packet,
 }
 
+/// On cache lines of its own: a thread that reads it with every packet does not wait for what another writes beside it.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+pub(super) struct Apart<T>(T);
+
+impl<T> Deref for Apart<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.0
+    }
+}
+
 /// What the threads of a run tell each other.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     /// Ends everything soon.
-    pub stop: AtomicBool,
+    pub stop: Apart<AtomicBool>,
     /// The producer has pushed its last packet.
     pub all_made: AtomicBool,
     /// Due time of the packet sent last, ns of stream time.
