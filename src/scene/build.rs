@@ -34,19 +34,21 @@ impl Builder {
         Builder { name: name.into(), scene: Table::new() }
     }
 
-    /// Sets a key: of the scene (`seed`), or of one of its tables (`earth.latitude`).
+    /// Sets a key: of the scene (`seed`), or of one of its tables (`earth.latitude`). The last value of a key counts.
     pub fn set(mut self, key: &str, value: impl Into<Value>) -> Builder {
-        let (tables, key) = key.rsplit_once('.').map_or(("", key), |(tables, key)| (tables, key));
+        let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
         let mut table = &mut self.scene;
         for name in tables.split('.').filter(|name| !name.is_empty()) {
             let entry = table.entry(name).or_insert_with(|| Table::new().into());
             if !entry.is_table() {
-                *entry = Table::new().into();
+                // A key below one that is no table is a mistake that `build` reports by its whole name.
+                self.scene.insert(key.to_string(), value.into());
+                return self;
             }
             let Value::Table(inner) = entry else { return self };
             table = inner;
         }
-        table.insert(key.to_string(), value.into());
+        table.insert(last.to_string(), value.into());
         self
     }
 
@@ -65,12 +67,11 @@ impl Builder {
         self.append("output", [("to", to)].iter())
     }
 
-    /// Adds a sensor with these keys; a key that is no text goes through [`Builder::set`], as `gyro.flicker`.
-    pub fn sensor(self, kind: SensorKind, keys: &[(&str, &str)]) -> Builder {
-        let table = |keys: &[(&str, &str)]| -> Table {
-            keys.iter().map(|(key, value)| (key.to_string(), Value::from(*value))).collect()
-        };
-        self.set(kind.name(), table(keys))
+    /// Adds a sensor with these keys to those that it has; a key that is no text goes through [`Builder::set`], as
+    /// `gyro.flicker`.
+    pub fn sensor(mut self, kind: SensorKind, keys: &[(&str, &str)]) -> Builder {
+        self.scene.entry(kind.name()).or_insert_with(|| Table::new().into());
+        keys.iter().fold(self, |scene, (key, value)| scene.set(&format!("{kind}.{key}"), *value))
     }
 
     fn append<'k>(mut self, list: &str, keys: impl Iterator<Item = &'k (&'k str, &'k str)>) -> Builder {
@@ -93,5 +94,29 @@ impl Builder {
     /// Every mistake in it.
     pub fn build(&self) -> Result<Plan, SceneError> {
         Plan::parse(&self.toml(), &self.name, &self.name, &[])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_in_which_keys_are_given_loses_none() {
+        let keys = [("rate", "100 Hz"), ("bias_instability", "0.01 deg/s")];
+        let scene = || Builder::new("s").set("duration", "1 s");
+        let before = scene().set("gyro.flicker", true).sensor(SensorKind::Gyro, &keys);
+        let after = scene().sensor(SensorKind::Gyro, &keys).set("gyro.flicker", true);
+        for scene in [before, after] {
+            let plan = scene.build().unwrap_or_else(|error| panic!("{error}"));
+            assert!(plan.build(&plan.sensors[0]).terms().contains(&"flicker"), "{}", scene.toml());
+        }
+    }
+
+    #[test]
+    fn a_key_below_one_that_is_no_table_is_a_mistake() {
+        let scene = Builder::new("s").set("duration", "1 s").sensor(SensorKind::Gyro, &[("rate", "1 Hz")]);
+        let mistake = scene.set("seed", 1).set("seed.more", 2).build().unwrap_err().to_string();
+        assert!(mistake.contains("seed.more"), "{mistake}");
     }
 }
