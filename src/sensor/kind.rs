@@ -127,6 +127,30 @@ pub struct Shown {
     pub scale: f64,
 }
 
+impl Shown {
+    /// In the unit of the reading.
+    const fn as_read(
+        title: &'static str,
+        label: &'static str,
+        unit: &'static str,
+        walk_unit: &'static str,
+    ) -> Shown {
+        Shown { title, label, in_chart: |value| value, unit, walk_unit, scale: 1.0 }
+    }
+
+    /// A pressure: its noise in Pa, its chart in hPa.
+    const fn pressure(title: &'static str, label: &'static str) -> Shown {
+        Shown {
+            title,
+            label,
+            in_chart: |pascals| pascals / 100.0,
+            unit: "Pa",
+            walk_unit: "Pa·√s",
+            scale: 1.0,
+        }
+    }
+}
+
 /// A kind's table in a dataset, as far as it is the kind's own.
 pub struct Table {
     /// A convention that readers of the numbers have to know: its subject, and what holds.
@@ -135,11 +159,6 @@ pub struct Table {
     pub note: Option<&'static str>,
     /// A column that follows from the value read.
     pub derived: Option<Derived>,
-}
-
-impl Table {
-    /// Of a triad: the reading, the truth and the bias, an axis a column.
-    const TRIAD: Table = Table { convention: None, note: None, derived: None };
 }
 
 /// A column that follows from the value read.
@@ -234,5 +253,18 @@ impl SensorKind {
 impl fmt::Display for SensorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_kind_has_its_own_row_and_the_triads_come_first() {
+        for (i, kind) in SensorKind::ALL.into_iter().enumerate() {
+            assert_eq!(format!("{kind:?}").to_lowercase(), kind.name());
+            assert_eq!((kind as usize, kind.is_triad()), (i, i < SensorKind::TRIADS.len()));
+        }
     }
 }

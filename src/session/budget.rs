@@ -91,8 +91,8 @@ impl fmt::Display for Budget {
     }
 }
 
-/// Refuses outputs that their links do not carry, unless their user wants them so: `force`, or an output that gives
-/// packets up or stretches scene time. Those that go on are told of with `warn`.
+/// Refuses an output whose link is too slow for it, unless `force` is set, for all or for this output, or its overload
+/// policy stretches scene time. It then calls `warn` with the arithmetic and the consequence.
 ///
 /// # Errors
 /// What is refused, with what would fit, a line each.

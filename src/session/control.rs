@@ -260,8 +260,8 @@ impl Control {
         Progress {
             t: scene.unwrap_or(stream),
             still: scene.is_none(),
-            packets: self.shared.packets.load(Ordering::Relaxed),
-            dropped: self.shared.dropped.load(Ordering::Relaxed),
+            packets: self.shared.packets.get(),
+            dropped: self.shared.dropped.get(),
             error: self.talk.borrow().heard.newest,
         }
     }

@@ -56,7 +56,7 @@ impl Hold {
 
     /// What the user should know of answers in lockstep that did not come.
     pub(super) fn untaken(&mut self, shared: &Shared) -> Option<String> {
-        let untaken = shared.untaken.load(Ordering::Relaxed);
+        let untaken = shared.untaken.get();
         let patience = SimTime(step::PATIENCE);
         (std::mem::replace(&mut self.untaken, untaken) < untaken).then(|| {
             format!("no answer to a packet of samples for {patience}: the stream goes on in real time until the next one")

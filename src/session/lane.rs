@@ -18,7 +18,6 @@ use crate::scene::Overload;
 use crate::sensor::Kinds;
 use crate::wire::Packet;
 use std::io::ErrorKind;
-use std::sync::atomic::Ordering;
 use tokio::time::Instant;
 
 /// The pacing thread's half of an output.
@@ -163,7 +162,7 @@ impl Lane {
         match sent {
             Sent::Done => {
                 self.tally.sent(&it.packet, before, it.late(before), pace.clock.now() - before);
-                pace.shared.packets.fetch_add(1, Ordering::Relaxed);
+                pace.shared.packets.add(1);
                 self.forget_replaced(&it.packet, pace);
                 pace.record_sent(&it.packet, it.due, before);
                 if let Some(step) = &mut self.step {
@@ -199,7 +198,7 @@ impl Lane {
     /// Counts a packet as dropped.
     fn lose<C: Clock>(&mut self, packet: &Packet, pace: &mut Pace<C>) {
         let lost = self.tally.dropped(packet);
-        pace.shared.dropped.fetch_add(lost, Ordering::Relaxed);
+        pace.shared.dropped.add(lost);
         self.forget_replaced(packet, pace);
         pace.record_lost(packet);
     }
@@ -207,9 +206,7 @@ impl Lane {
     /// Samples that newer ones replaced before this packet are dropped, whatever becomes of it.
     fn forget_replaced<C: Clock>(&mut self, packet: &Packet, pace: &Pace<C>) {
         let lost = self.tally.replaced(packet);
-        if lost > 0 {
-            pace.shared.dropped.fetch_add(lost, Ordering::Relaxed);
-        }
+        pace.shared.dropped.add(lost);
     }
 
     /// Writes the next reply; what came of it.

@@ -1,4 +1,4 @@
-//! Who may end a run from outside, and who is told of it.
+//! What is outside a run: the user, who gets its events and can stop it, and the program under test, whose end stops it.
 
 use super::command::Program;
 use super::{Event, SessionError};

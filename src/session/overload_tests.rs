@@ -398,6 +398,6 @@ proptest! {
             let sensor = &tally.sensors[0];
             prop_assert_eq!(made.samples[0], sensor.sent + sensor.dropped + left.samples[0]);
         }
-        prop_assert_eq!(ran.accounts.iter().map(|it| it.tally.dropped).sum::<u64>(), shared.dropped.load(Ordering::Relaxed));
+        prop_assert_eq!(ran.accounts.iter().map(|it| it.tally.dropped).sum::<u64>(), shared.dropped.get());
     }
 }

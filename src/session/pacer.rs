@@ -126,7 +126,7 @@ impl<C: Clock> Pacer<C> {
             // The tempo is another from here on.
             Turn::Even => self.pace.due_now(self.due(t)),
             Turn::Untaken => {
-                self.pace.shared.untaken.fetch_add(1, Ordering::Relaxed);
+                self.pace.shared.untaken.add(1);
                 self.pace.due_now(self.due(t));
             }
         }
@@ -170,7 +170,7 @@ impl<C: Clock> Pacer<C> {
 
     /// At the end: what waits may still go, as long as some of it moves.
     fn settle(&mut self) {
-        let packets = |pacer: &Self| pacer.pace.shared.packets.load(Ordering::Relaxed);
+        let packets = |pacer: &Self| pacer.pace.shared.packets.get();
         let mut moved = self.pace.clock.now();
         while self.lanes.iter().any(Lane::is_behind)
             && !self.pace.shared.stopped()

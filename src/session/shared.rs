@@ -30,6 +30,22 @@ impl<T> Deref for Apart<T> {
     }
 }
 
+/// A count that the pacing thread alone adds to and others read. No two threads add, so it takes no locked instruction.
+#[derive(Debug, Default)]
+pub(super) struct Count(AtomicU64);
+
+impl Count {
+    /// Adds to it, on the pacing thread.
+    pub(super) fn add(&self, more: u64) {
+        self.0.store(self.get() + more, Ordering::Relaxed);
+    }
+
+    /// What it is now.
+    pub(super) fn get(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
 /// What the threads of a run tell each other.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
@@ -47,10 +63,10 @@ pub(super) struct Shared {
     pub start_ns: AtomicI64,
     /// Stream time at which it was stretched last, ns: what was due earlier was due by an earlier start.
     pub stretched_at_ns: AtomicI64,
-    pub packets: AtomicU64,
-    pub dropped: AtomicU64,
+    pub packets: Count,
+    pub dropped: Count,
     /// Packets whose answer was not waited for any longer.
-    pub untaken: AtomicU64,
+    pub untaken: Count,
 }
 
 impl Shared {

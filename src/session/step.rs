@@ -3,7 +3,7 @@
 use crate::clock::Clock;
 use crate::scene::Output;
 use crate::sensor::{Kinds, SensorKind};
-use crate::wire::{Controller, Packet, Protocol};
+use crate::wire::{Controller, Packet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -17,7 +17,7 @@ const ANSWERED: Kinds = Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]);
 
 /// Whether the other side of an output answers each packet of samples.
 pub(super) fn in_lockstep(output: &Output) -> bool {
-    output.to.protocol == Protocol::Mavlink && output.wire.controller == Some(Controller::Px4Sitl)
+    output.wire.controller == Some(Controller::Px4Sitl)
 }
 
 /// One output in lockstep.

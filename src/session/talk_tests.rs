@@ -338,7 +338,7 @@ fn in_lockstep_each_packet_waits_for_the_answer_to_the_one_before() {
         assert_eq!(ran.rows().len(), 400, "{speed:?}");
         assert_eq!(ran.tally.dropped, 0);
         assert_eq!(most, 1, "{speed:?}: never two without an answer");
-        assert_eq!(shared.untaken.load(Ordering::Relaxed), 0);
+        assert_eq!(shared.untaken.get(), 0);
         // Until the first answer no faster than in real time, then as asked or as the other side lets it.
         let free = 310.0;
         let a_packet = match speed {
@@ -373,7 +373,7 @@ fn a_controller_that_stops_answering_is_waited_for_some_seconds_and_then_again_o
             answered = seen;
         });
         assert_eq!((ran.rows().len(), ran.tally.dropped), (900, 0), "{speed:?}");
-        assert_eq!(shared.untaken.load(Ordering::Relaxed), 1, "{speed:?}: told once");
+        assert_eq!(shared.untaken.get(), 1, "{speed:?}: told once");
         assert!(lead <= 1, "{speed:?}: in lockstep again, {lead} ahead");
         // Three seconds without an answer, then two hundred packets in real time.
         assert!(ran.end > 3 * S + 2 * S, "{speed:?}: {}", ran.end);
@@ -392,10 +392,7 @@ fn the_pacing_thread_allocates_nothing_while_it_replies_and_keeps_step() {
     tests::produce(&plan, &[output("csv@pty")], ring, &shared);
     // Each packet is answered in the next millisecond.
     let (answers, sent) = (took.clone(), shared.clone());
-    let world = World {
-        now: 0,
-        act: move |_| answers.store(sent.packets.load(Ordering::Relaxed), Ordering::Relaxed),
-    };
+    let world = World { now: 0, act: move |_| answers.store(sent.packets.get(), Ordering::Relaxed) };
     lane.step = Some(Step::new(took));
     let pace = Pace::new(world, Speed::Times(1.0), shared.clone());
     let mut pacer = Pacer { pace, ring: consumer, lanes: vec![lane] };

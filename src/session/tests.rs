@@ -13,7 +13,6 @@ use crate::scene::{Output, Overload, Plan};
 use crate::wire::{self, Protocol, Setup};
 use std::convert::Infallible;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// 1 kHz gyro and accel, 100 Hz mag, for a second.
@@ -140,10 +139,7 @@ fn a_reader_that_stops_and_resumes_costs_exactly_what_is_counted() {
     assert!(tally.dropped > 0 && tally.packets > 100, "{} dropped of {}", tally.dropped, tally.packets);
     let there = far.take().len() + pacer.lanes[0].sender.kept();
     assert_eq!(there as u64, tally.bytes, "what was counted as sent is there");
-    assert_eq!(
-        shared.dropped.load(Ordering::Relaxed),
-        tally.sensors.iter().map(|sensor| sensor.dropped).sum::<u64>()
-    );
+    assert_eq!(shared.dropped.get(), tally.sensors.iter().map(|sensor| sensor.dropped).sum::<u64>());
 }
 
 #[test]

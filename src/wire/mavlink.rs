@@ -14,9 +14,8 @@ mod reader;
 
 pub use extra::{Extra, Extras};
 
-use super::Controller;
 use super::row::{Row, Shared};
-use super::{Encoder, EverySecond, Newest, Now, Packet, Setup, body, pressure};
+use super::{Controller, Encoder, EverySecond, Newest, Now, Packet, Setup, body, pressure};
 use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, Claims, Kinds, SensorKind};
 use crate::time::SimTime;
@@ -33,7 +32,7 @@ pub(super) static ROW: Row = Row {
         false => Box::new(reader::Reader::default()),
     },
     dialogue: |controller| Some(Box::new(dialogue::Mavlink::new(controller))),
-    shared: |first| Some(Shared::at_ticks("HIL_SENSOR", first)),
+    shared: |first| Some(Shared::at_ticks("HIL_SENSOR", KINDS, first)),
     check: |options, _| {
         let px4 = matches!(options.controller, Some(Controller::Px4 | Controller::Px4Sitl));
         let truth = options.extras.iter().find(|extra| px4 && extra.is_truth());
@@ -73,13 +72,15 @@ const MASKS: [(SensorKind, u32); 5] = [
     (SensorKind::Baro, hil_sensor::PRESSURE),
     (SensorKind::Airspeed, hil_sensor::DIFF_PRESSURE),
 ];
-const KINDS: Kinds = Kinds::of(&[
-    SensorKind::Gyro,
-    SensorKind::Accel,
-    SensorKind::Mag,
-    SensorKind::Baro,
-    SensorKind::Airspeed,
-]);
+/// Those kinds.
+const KINDS: Kinds = {
+    let (mut kinds, mut i) = (Kinds::NONE, 0);
+    while i < MASKS.len() {
+        kinds.insert(MASKS[i].0);
+        i += 1;
+    }
+    kinds
+};
 
 pub(super) struct Mavlink {
     version: Version,
@@ -109,11 +110,7 @@ impl Mavlink {
             extras: setup.options.extras.iter().map(Sender::new).collect(),
             counts: super::mpu::counts(setup.sensors),
             newest: Newest::default(),
-            carrier: setup
-                .sensors
-                .iter()
-                .map(|sensor| sensor.kind)
-                .find(|kind| ROW.carries.contains(*kind) && *kind != SensorKind::Gps),
+            carrier: setup.sensors.iter().map(|sensor| sensor.kind).find(|kind| KINDS.contains(*kind)),
             claims: setup
                 .sensors
                 .iter()

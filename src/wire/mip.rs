@@ -23,7 +23,7 @@ pub(super) static ROW: Row = Row {
     encoder: |setup| Box::new(Mip::new(setup)),
     reader: |_| Box::new(reader::Reader::default()),
     dialogue: |_| None,
-    shared: |first| Some(Shared::at_ticks("a packet", first)),
+    shared: |first| Some(Shared::at_ticks("a packet", CARRIED, first)),
     check: any,
     greeting: |_| vec![0],
     is_numbered: false,

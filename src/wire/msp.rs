@@ -28,11 +28,12 @@ pub(super) static ROW: Row = Row {
         let capped = first.rate.as_hz() > FASTEST.as_hz();
         Some(match capped {
             true => Shared {
+                kinds: CARRIED,
                 rate: FASTEST,
                 what: format!("{} packets a second, as many as an INAV board takes", FASTEST.as_hz()),
                 fits: Some(FASTEST),
             },
-            false => Shared::at_ticks("a packet", first),
+            false => Shared::at_ticks("a packet", CARRIED, first),
         })
     },
     check: any,

@@ -133,8 +133,7 @@ pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
 fn replaced(protocol: Protocol, sensors: &[&SensorPlan]) -> Vec<String> {
     let shared = sensors.first().and_then(|first| (protocol.row().shared)(first));
     let Some(shared) = shared else { return Vec::new() };
-    // A fix has a message of its own.
-    let faster = sensors.iter().filter(|sensor| sensor.kind != SensorKind::Gps);
+    let faster = sensors.iter().filter(|sensor| shared.kinds.contains(sensor.kind));
     let faster = faster.filter(|sensor| sensor.rate.as_hz() > shared.rate.as_hz());
     let fits = shared.fits.map_or(String::new(), |rate| format!("; a rate of {rate} fits"));
     faster
@@ -145,4 +144,16 @@ fn replaced(protocol: Protocol, sensors: &[&SensorPlan]) -> Vec<String> {
             )
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_protocol_has_its_own_row() {
+        for protocol in Protocol::ALL {
+            assert_eq!(format!("{protocol:?}").to_lowercase(), protocol.name());
+        }
+    }
 }

@@ -36,7 +36,9 @@ pub(super) struct Row {
 
 /// Packets that carry the newest sample of several sensors: a sensor that is faster loses samples to newer ones.
 pub(super) struct Shared {
-    /// How many there are.
+    /// The kinds that they carry: another kind has packets of its own.
+    pub kinds: Kinds,
+    /// How many packets a second there are.
     pub rate: Rate,
     /// What they are, and when they are sent.
     pub what: String,
@@ -45,10 +47,10 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Packets called so, at each tick of the first sensor.
-    pub fn at_ticks(what: &str, first: &SensorPlan) -> Shared {
+    /// Packets called so that carry these kinds, at each tick of the first sensor.
+    pub fn at_ticks(what: &str, kinds: Kinds, first: &SensorPlan) -> Shared {
         let what = format!("{what} at each {} tick ({})", first.kind, first.rate);
-        Shared { rate: first.rate, what, fits: None }
+        Shared { kinds, rate: first.rate, what, fits: None }
     }
 }
 

@@ -61,6 +61,12 @@ impl Sensed {
         }
     }
 
+    /// Body axes in so many of our units; `None` where they are no numbers.
+    pub(super) fn triad(values: [impl Into<f64>; 3], unit: f64) -> Option<Sensed> {
+        let [x, y, z] = values.map(Into::into);
+        Sensed::Body(Vector::new(x, y, z) * unit).known()
+    }
+
     /// Itself, unless it is no number.
     pub(super) fn known(self) -> Option<Sensed> {
         let is_number = match self {

@@ -3,42 +3,48 @@
 mod reader;
 
 use super::row::{Row, any};
+use super::samples::{self, Assumed};
 use super::{Encoder, Now, Packet, Setup};
 use crate::geometry::Axes;
 use crate::sensor::{Fix, Kinds, Measured, Measurement, Position, Reading, SensorKind};
 use crate::time::SimTime;
 use std::io::Write;
 
-pub(super) static CSV: Row = Row {
-    name: "csv",
-    about: "t_ns,sensor,x,y,z: one line a reading, in the scene's axes (baro, airspeed: Pa; gps: degrees, altitude, velocity)",
-    encoder: |setup| Box::new(Text::csv(setup)),
-    reader: |assumed| Box::new(reader::Reader::csv(assumed.axes)),
-    ..LINES
-};
+pub(super) static CSV: Row = lines(
+    "csv",
+    "t_ns,sensor,x,y,z: one line a reading, in the scene's axes (baro, airspeed: Pa; gps: degrees, altitude, velocity)",
+    |setup| Box::new(Text::csv(setup)),
+    |assumed| Box::new(reader::Reader::csv(assumed.axes)),
+);
 
-pub(super) static JSONL: Row = Row {
-    name: "jsonl",
-    about: "the same as one JSON object a line",
-    encoder: |setup| Box::new(Text::jsonl(setup)),
-    reader: |assumed| Box::new(reader::Reader::jsonl(assumed.axes)),
-    ..LINES
-};
+pub(super) static JSONL: Row = lines(
+    "jsonl",
+    "the same as one JSON object a line",
+    |setup| Box::new(Text::jsonl(setup)),
+    |assumed| Box::new(reader::Reader::jsonl(assumed.axes)),
+);
 
-/// What both have in common.
-const LINES: Row = Row {
-    name: "",
-    about: "",
-    carries: Kinds::ALL,
-    encoder: |setup| Box::new(Text::csv(setup)),
-    reader: |assumed| Box::new(reader::Reader::csv(assumed.axes)),
-    dialogue: |_| None,
-    shared: |_| None,
-    check: any,
-    greeting: |_| b"\n".to_vec(),
-    is_numbered: false,
-    inside: |len| (0..len.saturating_sub(1), Some(b'\n')),
-};
+/// A protocol of lines.
+const fn lines(
+    name: &'static str,
+    about: &'static str,
+    encoder: fn(&Setup<'_>) -> Box<dyn Encoder>,
+    reader: fn(&Assumed) -> Box<dyn samples::Reader>,
+) -> Row {
+    Row {
+        name,
+        about,
+        carries: Kinds::ALL,
+        encoder,
+        reader,
+        dialogue: |_| None,
+        shared: |_| None,
+        check: any,
+        greeting: |_| b"\n".to_vec(),
+        is_numbered: false,
+        inside: |len| (0..len.saturating_sub(1), Some(b'\n')),
+    }
+}
 
 /// Lines in the scene's own axes, SI units and µT.
 pub(super) struct Text {

@@ -171,7 +171,15 @@ impl Uses {
     }
 }
 
-pub(super) fn is_for_tests(attributes: &[syn::Attribute]) -> bool {
+/// Whether an item is compiled for tests alone.
+pub(super) fn is_for_tests(item: &syn::Item) -> bool {
+    let attributes: &[syn::Attribute] = match item {
+        syn::Item::Mod(item) => &item.attrs,
+        syn::Item::Use(item) => &item.attrs,
+        syn::Item::Fn(item) => &item.attrs,
+        syn::Item::Impl(item) => &item.attrs,
+        _ => &[],
+    };
     attributes.iter().any(|attribute| {
         let is_test = |tokens: &syn::MetaList| {
             tokens.tokens.to_string().split(|c: char| !c.is_alphanumeric()).any(|word| word == "test")
@@ -182,14 +190,7 @@ pub(super) fn is_for_tests(attributes: &[syn::Attribute]) -> bool {
 
 impl<'ast> Visit<'ast> for Uses {
     fn visit_item(&mut self, item: &'ast syn::Item) {
-        let attributes: &[syn::Attribute] = match item {
-            syn::Item::Mod(item) => &item.attrs,
-            syn::Item::Use(item) => &item.attrs,
-            syn::Item::Fn(item) => &item.attrs,
-            syn::Item::Impl(item) => &item.attrs,
-            _ => &[],
-        };
-        if !is_for_tests(attributes) {
+        if !is_for_tests(item) {
             visit::visit_item(self, item);
         }
     }

@@ -27,14 +27,7 @@ pub(super) static ROW: Row = Row {
     usual_rate: None,
     keys: || vec![weather(), wind_key()],
     may_repeat: false,
-    shown: Shown {
-        title: "Pitot tube",
-        label: "differential pressure (hPa)",
-        in_chart: |pascals| pascals / 100.0,
-        unit: "Pa",
-        walk_unit: "Pa·√s",
-        scale: 1.0,
-    },
+    shown: Shown::pressure("Pitot tube", "differential pressure (hPa)"),
     table: Table {
         convention: Some((
             "differential_pressure",

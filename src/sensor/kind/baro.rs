@@ -20,14 +20,7 @@ pub(super) static ROW: Row = Row {
     usual_rate: None,
     keys: || vec![weather()],
     may_repeat: false,
-    shown: Shown {
-        title: "Barometer",
-        label: "pressure (hPa)",
-        in_chart: |pascals| pascals / 100.0,
-        unit: "Pa",
-        walk_unit: "Pa·√s",
-        scale: 1.0,
-    },
+    shown: Shown::pressure("Barometer", "pressure (hPa)"),
     table: Table {
         convention: Some(("pressure", "of the air, absolute, Pa")),
         note: Some(

@@ -18,14 +18,7 @@ pub(super) static ROW: Row = Row {
     usual_rate: Some("5 Hz"),
     keys,
     may_repeat: true,
-    shown: Shown {
-        title: "GPS position from the start",
-        label: "displacement (m)",
-        in_chart: |value| value,
-        unit: "m",
-        walk_unit: "m·√s",
-        scale: 1.0,
-    },
+    shown: Shown::as_read("GPS position from the start", "displacement (m)", "m", "m·√s"),
     table: Table {
         convention: Some((
             "position",

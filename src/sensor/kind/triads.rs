@@ -1,22 +1,16 @@
 //! `[gyro]`, `[accel]` and `[mag]`: three body axes each.
 
 use super::{Row, Senses, Shape, Shown, Table};
-use crate::sensor::units;
+use crate::sensor::units::{self, Units};
 
 const DEGREES: f64 = 1f64.to_degrees();
 
-pub(super) static GYRO: Row = Row {
-    name: "gyro",
-    shape: Shape::Triad,
-    senses: Senses::Rate,
-    components: &["x", "y", "z"],
-    unit: "rad/s",
-    column_unit: "rad_s",
-    units: &units::GYRO_UNITS,
-    usual_rate: None,
-    keys: Vec::new,
-    may_repeat: false,
-    shown: Shown {
+pub(super) static GYRO: Row = triad(
+    "gyro",
+    Senses::Rate,
+    ["rad/s", "rad_s"],
+    &units::GYRO_UNITS,
+    Shown {
         title: "Gyroscope",
         label: "angular rate (deg/s)",
         in_chart: f64::to_degrees,
@@ -24,49 +18,44 @@ pub(super) static GYRO: Row = Row {
         walk_unit: "deg/√s",
         scale: DEGREES,
     },
-    table: Table::TRIAD,
-};
+);
 
-pub(super) static ACCEL: Row = Row {
-    name: "accel",
-    shape: Shape::Triad,
-    senses: Senses::Force,
-    components: &["x", "y", "z"],
-    unit: "m/s^2",
-    column_unit: "m_s2",
-    units: &units::ACCEL_UNITS,
-    usual_rate: None,
-    keys: Vec::new,
-    may_repeat: false,
-    shown: Shown {
-        title: "Accelerometer",
-        label: "specific force (m/s²)",
-        in_chart: |value| value,
-        unit: "m/s²",
-        walk_unit: "m/s/√s",
-        scale: 1.0,
-    },
-    table: Table::TRIAD,
-};
+pub(super) static ACCEL: Row = triad(
+    "accel",
+    Senses::Force,
+    ["m/s^2", "m_s2"],
+    &units::ACCEL_UNITS,
+    Shown::as_read("Accelerometer", "specific force (m/s²)", "m/s²", "m/s/√s"),
+);
 
-pub(super) static MAG: Row = Row {
-    name: "mag",
-    shape: Shape::Triad,
-    senses: Senses::Field,
-    components: &["x", "y", "z"],
-    unit: "uT",
-    column_unit: "ut",
-    units: &units::MAG_UNITS,
-    usual_rate: None,
-    keys: Vec::new,
-    may_repeat: false,
-    shown: Shown {
-        title: "Magnetometer",
-        label: "magnetic field (µT)",
-        in_chart: |value| value,
-        unit: "µT",
-        walk_unit: "µT·√s",
-        scale: 1.0,
-    },
-    table: Table::TRIAD,
-};
+pub(super) static MAG: Row = triad(
+    "mag",
+    Senses::Field,
+    ["uT", "ut"],
+    &units::MAG_UNITS,
+    Shown::as_read("Magnetometer", "magnetic field (µT)", "µT", "µT·√s"),
+);
+
+/// A sensor of three body axes; the unit of a reading as a scene spells it, and as it ends a column's name.
+const fn triad(
+    name: &'static str,
+    senses: Senses,
+    [unit, column_unit]: [&'static str; 2],
+    units: &'static Units,
+    shown: Shown,
+) -> Row {
+    Row {
+        name,
+        shape: Shape::Triad,
+        senses,
+        components: &["x", "y", "z"],
+        unit,
+        column_unit,
+        units,
+        usual_rate: None,
+        keys: Vec::new,
+        may_repeat: false,
+        shown,
+        table: Table { convention: None, note: None, derived: None },
+    }
+}

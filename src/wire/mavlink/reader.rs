@@ -3,12 +3,10 @@
 
 use super::damage::Stretches;
 use crate::earth::STANDARD_GRAVITY;
-use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
 use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source, log};
-use glam::DVec3;
 use ratetable_protocols::mavlink::{
     Decoder, Header, MAX_LEN, Message, Received, Version, encode, heartbeat, highres_imu, hil_sensor, known,
     scaled_imu,
@@ -242,8 +240,7 @@ impl Inertial {
 
 /// Body axes in so many of our units.
 fn triad(kind: SensorKind, values: [f32; 3], unit: f64) -> (SensorKind, Option<Sensed>) {
-    let value = DVec3::from_array(values.map(f64::from)) * unit;
-    (kind, Sensed::Body(Vector::from_vec(value)).known())
+    (kind, Sensed::triad(values, unit))
 }
 
 fn pressure(kind: SensorKind, hectopascals: f32) -> (SensorKind, Option<Sensed>) {
@@ -256,8 +253,7 @@ fn counts(values: [[i16; 3]; 3], units: Option<[f64; 3]>) -> [Option<(SensorKind
     let present = |kind: SensorKind| kind != SensorKind::Mag || values[2] != [0; 3];
     let reading = |kind: SensorKind| {
         let i = kind as usize;
-        let value = units.map(|units| DVec3::from_array(values[i].map(f64::from)) * units[i]);
-        (kind, value.and_then(|value| Sensed::Body(Vector::from_vec(value)).known()))
+        (kind, units.and_then(|units| Sensed::triad(values[i], units[i])))
     };
     let [gyro, accel, mag] = SensorKind::TRIADS.map(|kind| present(kind).then(|| reading(kind)));
     [gyro, accel, mag, None, None]

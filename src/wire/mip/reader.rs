@@ -2,12 +2,10 @@
 //! whichever field of theirs has one; ours have none.
 
 use crate::earth::STANDARD_GRAVITY;
-use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::MICROTESLA_A_GAUSS;
 use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
-use glam::DVec3;
 use ratetable_protocols::Error;
 use ratetable_protocols::mip::{Decoder, imu};
 
@@ -53,8 +51,7 @@ fn take(received: Result<imu::Repr, Error>, counts: &mut Counts, each: &mut dyn 
     let t = time(seen.time);
     let mut sample = |kind, values: Option<[f32; 3]>, unit: f64| {
         let Some(values) = values else { return };
-        let value = DVec3::from_array(values.map(f64::from)) * unit;
-        let value = Sensed::Body(Vector::from_vec(value)).known();
+        let value = Sensed::triad(values, unit);
         each(Sample { kind, source: Source::only("mip"), t, value, packet: Carrier::default() });
     };
     sample(SensorKind::Gyro, seen.gyro, 1.0);

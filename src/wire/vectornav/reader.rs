@@ -1,11 +1,9 @@
 //! `vectornav`: IMU packets back to readings, a sample of each sensor in every packet, new or held.
 
-use crate::geometry::Vector;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
 use crate::wire::mavlink::MICROTESLA_A_GAUSS;
 use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
-use glam::DVec3;
 use ratetable_protocols::Error;
 use ratetable_protocols::vectornav::{Decoder, Packet};
 
@@ -32,8 +30,7 @@ fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut dyn FnM
     let Packet::Imu(seen) = packet else { return counts.foreign(packet.name()) };
     let t = i64::try_from(seen.time_ns).ok().map(SimTime);
     let mut sample = |kind, values: [f32; 3], unit: f64| {
-        let value = DVec3::from_array(values.map(f64::from)) * unit;
-        let value = Sensed::Body(Vector::from_vec(value)).known();
+        let value = Sensed::triad(values, unit);
         each(Sample { kind, source: Source::only("vectornav"), t, value, packet: Carrier::default() });
     };
     sample(SensorKind::Gyro, seen.gyro, 1.0);

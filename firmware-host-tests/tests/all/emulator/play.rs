@@ -9,7 +9,7 @@ use std::time::Duration;
 use ratetable::player::Player;
 use ratetable::scene::{Output, Plan};
 use ratetable::sensor::Reading;
-use ratetable::session::{self, Event, Job, Judging, Outcome, Speed};
+use ratetable::session::{self, Event, Job, Outcome, Speed};
 use ratetable::time::SimTime;
 use ratetable_firmware_host_tests::board::{Arrival, Device, Port};
 use ratetable_firmware_host_tests::{Board, Options, Protocol};
@@ -41,21 +41,8 @@ pub fn play_after<T: Send + 'static>(
     other_side: impl FnOnce(&str) -> T + Send + 'static,
     mut on: impl FnMut(&Event<'_>),
 ) -> (Outcome, T) {
-    let job = Job {
-        plan: plan.clone(),
-        outputs: vec![Output::to(to.parse().expect("a destination"))],
-        end: plan.duration,
-        rest,
-        ground: None,
-        speed,
-        wait: Duration::from_secs(30),
-        command: Vec::new(),
-        keep_stdout: false,
-        judging: Judging::default(),
-        cpu: None,
-        watch: None,
-        tap: None,
-    };
+    let outputs = vec![Output::to(to.parse().expect("a destination"))];
+    let job = Job { rest, speed, wait: Duration::from_secs(30), ..Job::new(plan.clone(), outputs) };
     let (mut waiting, mut running) = (Some(other_side), None);
     let outcome = session::run(job, &mut |event| {
         if let Event::Ready(name) = &event
