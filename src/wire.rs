@@ -53,7 +53,7 @@ pub use load::load;
 pub use packet::{MAX_PACKET, Packet};
 pub use protocol::{Protocol, check, encoder, warnings};
 
-use newest::{Newest, body, pressure};
+use newest::Newest;
 use seconds::EverySecond;
 
 use crate::earth::{Day, STANDARD_GRAVITY, default_field};

@@ -155,13 +155,19 @@ impl<C: Clock> Pacer<C> {
     /// Has its lane deliver a packet; for as long as that waits for its link, scene time stands still: all that follows
     /// is due later.
     fn deliver(&mut self, lane: usize, mut it: Due) {
-        let (due, begun) = (it.due, self.pace.clock.now());
-        while self.lanes[lane].deliver(it, &mut self.pace) == Delivery::Again {
+        let due = it.due;
+        if self.lanes[lane].deliver(it, &mut self.pace) == Delivery::Over {
+            return;
+        }
+        let begun = self.pace.clock.now();
+        loop {
             self.pace.wait(RETRY);
             self.catch_up();
             it.due = due + (self.pace.clock.now() - begun);
+            if self.lanes[lane].deliver(it, &mut self.pace) == Delivery::Over {
+                return self.pace.shift(it.due - due, it.packet.due);
+            }
         }
-        self.pace.shift(it.due - due, it.packet.due);
     }
 
     fn catch_up(&mut self) {

@@ -4,6 +4,7 @@
 //! A packet is due on time whether or not a sample is: one that came later waits for the next packet, and a sensor
 //! without a new one is told again as it was, as a unit that holds its output registers does.
 
+use super::newest::Told;
 use super::{Newest, Packet, Setup};
 use crate::earth::SEA_LEVEL_PRESSURE;
 use crate::geometry::{Body, Vector};
@@ -44,11 +45,11 @@ impl Latest {
         readings: &[Reading],
         out: &mut Vec<Packet>,
         buffer: &mut [u8],
-        mut write: impl FnMut(SimTime, &ByKind<Option<Reading>>, &mut [u8]) -> usize,
+        mut write: impl FnMut(SimTime, &Told, &mut [u8]) -> usize,
     ) {
         let mut send = |latest: &mut Latest, due| {
             if latest.has_begun() {
-                let len = write(due, &latest.newest.values, buffer);
+                let len = write(due, &latest.newest.told, buffer);
                 out.push(latest.newest.packet(due, CARRIED, &buffer[..len]));
             }
             latest.next += 1;
@@ -63,8 +64,8 @@ impl Latest {
     }
 
     /// The newest reading of each sensor.
-    pub(super) fn newest(&self) -> &ByKind<Option<Reading>> {
-        &self.newest.values
+    pub(super) fn newest(&self) -> &Told {
+        &self.newest.told
     }
 
     /// Samples of each kind taken in that no packet has carried yet.
@@ -78,13 +79,13 @@ impl Latest {
     }
 
     fn has_begun(&self) -> bool {
-        self.carrier.is_some_and(|kind| self.newest.values[kind as usize].is_some())
+        self.carrier.is_some_and(|kind| self.newest.told.has(kind))
     }
 }
 
 /// The barometer's newest reading, or the standard atmosphere's at sea level where the scene has none, Pa.
-pub(super) fn pascals(newest: &ByKind<Option<Reading>>) -> f64 {
-    super::pressure(newest, SensorKind::Baro).unwrap_or(SEA_LEVEL_PRESSURE)
+pub(super) fn pascals(newest: &Told) -> f64 {
+    newest.pressure(SensorKind::Baro).unwrap_or(SEA_LEVEL_PRESSURE)
 }
 
 /// Body axes in so many of a unit, 0 where there are none.

@@ -15,7 +15,7 @@ mod reader;
 pub use extra::{Extra, Extras};
 
 use super::row::{Row, Shared};
-use super::{Controller, Encoder, EverySecond, Newest, Now, Packet, Setup, body, pressure};
+use super::{Controller, Encoder, EverySecond, Newest, Now, Packet, Setup};
 use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, Claims, Kinds, SensorKind};
 use crate::time::SimTime;
@@ -162,13 +162,14 @@ impl Mavlink {
     fn hil_sensor(&self, t: SimTime) -> Message {
         let readings = self.readings();
         let value = |kind, unit| readings.over(kind, unit).map(|x| x as f32);
-        let fresh = MASKS.iter().filter(|(kind, _)| self.newest.fresh.contains(*kind));
-        let fresh = fresh.map(|(_, mask)| *mask);
         let temperature = readings.temperature();
-        let fresh = fresh.chain(temperature.map(|_| hil_sensor::TEMPERATURE));
-        let baro = self.newest.values[SensorKind::Baro as usize];
-        let absolute = pressure(&self.newest.values, SensorKind::Baro);
-        let differential = pressure(&self.newest.values, SensorKind::Airspeed);
+        let mut fields_updated = temperature.map_or(0, |_| hil_sensor::TEMPERATURE);
+        for (kind, mask) in MASKS {
+            fields_updated |= if self.newest.fresh.contains(kind) { mask } else { 0 };
+        }
+        let told = &self.newest.told;
+        let absolute = told.pressure(SensorKind::Baro);
+        let differential = told.pressure(SensorKind::Airspeed);
         Message::HilSensor(hil_sensor::Repr {
             time_usec: t.0 as u64 / 1000,
             accel: value(SensorKind::Accel, 1.0),
@@ -177,8 +178,8 @@ impl Mavlink {
             abs_pressure: absolute.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
             diff_pressure: differential.map_or(0.0, |pascals| (pascals / PASCALS_A_HECTOPASCAL) as f32),
             pressure_alt: absolute.map_or(0.0, |pascals| pressure_altitude(pascals) as f32),
-            temperature: temperature.or(baro.map(|reading| reading.temperature)).unwrap_or(0.0) as f32,
-            fields_updated: fresh.fold(0, |mask, bits| mask | bits),
+            temperature: temperature.or(told.temperature(SensorKind::Baro)).unwrap_or(0.0) as f32,
+            fields_updated,
             id: 0,
         })
     }
@@ -207,12 +208,12 @@ struct Readings<'a> {
 impl Readings<'_> {
     /// A reading in this unit; 0 before the first.
     fn over(&self, kind: SensorKind, unit: f64) -> [f64; 3] {
-        body(&self.newest.values, kind).map_or([0.0; 3], |value| value.v.to_array().map(|x| x / unit))
+        self.newest.told.body(kind).map_or([0.0; 3], |value| value.v.to_array().map(|x| x / unit))
     }
 
     /// °C, where the scene gives one.
     fn temperature(&self) -> Option<f64> {
-        self.newest.values[self.warm? as usize].map(|reading| reading.temperature)
+        self.newest.told.temperature(self.warm?)
     }
 }
 
@@ -236,7 +237,9 @@ impl Encoder for Mavlink {
             let bytes = self.bytes(&message, &mut buffer);
             out.push(self.newest.packet(t, SensorKind::Gps.into(), bytes));
         }
-        self.extras(now, out);
+        if !self.extras.is_empty() {
+            self.extras(now, out);
+        }
     }
 
     fn waiting(&self) -> ByKind<u64> {

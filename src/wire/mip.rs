@@ -8,11 +8,12 @@ mod reader;
 
 use super::latest::{CARRIED, Latest, in_units, pascals};
 use super::mavlink::{MICROTESLA_A_GAUSS, PASCALS_A_HECTOPASCAL};
+use super::newest::Told;
 use super::row::{Row, Shared, any};
-use super::{Encoder, Now, Packet, Setup, body, stopped};
+use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::earth::STANDARD_GRAVITY;
 use crate::motion::Truth;
-use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
+use crate::sensor::{ByKind, Kinds, SensorKind};
 use crate::time::SimTime;
 use ratetable_protocols::mip::{self, imu};
 
@@ -57,8 +58,7 @@ impl Encoder for Mip {
         for (kind, value) in
             [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
         {
-            still[kind as usize] =
-                self.kinds.contains(&kind).then(|| Reading::zero(0, kind).with_body(value));
+            still.put(kind, self.kinds.contains(&kind).then_some(value));
         }
         let mut buffer = [0; mip::MAX_LEN];
         let len = write(&still, &mut buffer);
@@ -71,8 +71,8 @@ impl Encoder for Mip {
 }
 
 /// The packet of the newest readings.
-fn write(newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
-    let field = |kind: SensorKind, unit: f64| body(newest, kind).map(|value| in_units(Some(value), unit));
+fn write(newest: &Told, buffer: &mut [u8]) -> usize {
+    let field = |kind: SensorKind, unit: f64| newest.body(kind).map(|value| in_units(Some(value), unit));
     let imu = imu::Repr {
         // A millibar is a hectopascal.
         pressure: Some((pascals(newest) / PASCALS_A_HECTOPASCAL) as f32),

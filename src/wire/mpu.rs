@@ -7,7 +7,7 @@ mod dialogue;
 mod reader;
 
 use super::row::Row;
-use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup, body};
+use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup};
 use crate::earth::STANDARD_GRAVITY;
 use crate::sensor::{ByKind, Kinds, Mount, REFERENCE_TEMPERATURE, SensorKind, SensorPlan, lsb};
 use crate::time::SimTime;
@@ -102,7 +102,7 @@ impl Mpu {
     /// The newest reading in counts on the chip's axes.
     fn counts(&self, kind: SensorKind) -> [i16; 3] {
         let (mount, count) = self.scales[kind as usize];
-        let Some(value) = body(&self.newest.values, kind) else { return [0; 3] };
+        let Some(value) = self.newest.told.body(kind) else { return [0; 3] };
         let chip = mount.to_chip(value).v.to_array();
         match kind {
             SensorKind::Mag => registers::swap_mag_axes(chip).map(|x| registers::mag_raw(x, ASA)),
@@ -112,8 +112,8 @@ impl Mpu {
 
     /// Of the die, °C: the gyro's where there is one.
     fn temperature(&self) -> f64 {
-        let [gyro, accel, ..] = &self.newest.values;
-        gyro.as_ref().or(accel.as_ref()).map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature)
+        let of = |kind| self.newest.told.temperature(kind);
+        of(SensorKind::Gyro).or_else(|| of(SensorKind::Accel)).unwrap_or(REFERENCE_TEMPERATURE)
     }
 
     fn imu(&self) -> mpu::Packet {
@@ -134,7 +134,7 @@ impl Mpu {
                 let (mount, count) = self.scales[kind as usize];
                 // AK8963 (MS1356-E): it overflows when |X| + |Y| + |Z| reaches the full scale.
                 let sum = |value| mount.to_chip(value).v.abs().element_sum();
-                let field = body(&self.newest.values, kind).map_or(0.0, sum);
+                let field = self.newest.told.body(kind).map_or(0.0, sum);
                 let overflow = if field > f64::from(registers::MAG_MAX_COUNT) * count {
                     registers::ST2_OVERFLOW
                 } else {
@@ -161,9 +161,10 @@ impl Encoder for Mpu {
         if self.burst.is_some_and(|carrier| readings.iter().any(|reading| reading.kind == carrier)) {
             self.push(t, IMU, &self.imu(), out);
         }
-        for kind in readings.iter().map(|reading| reading.kind) {
-            let alone = self.alone(kind).filter(|_| self.burst.is_none() || kind == SensorKind::Mag);
-            if let Some(packet) = alone {
+        let together = self.burst.is_some();
+        let is_alone = |kind: &SensorKind| !together || *kind == SensorKind::Mag;
+        for kind in readings.iter().map(|reading| reading.kind).filter(is_alone) {
+            if let Some(packet) = self.alone(kind) {
                 self.push(t, kind.into(), &packet, out);
             }
         }

@@ -9,7 +9,7 @@ mod reader;
 
 use super::latest::{CARRIED, Latest, pascals};
 use super::row::{Row, Shared, any};
-use super::{Encoder, Now, Packet, Setup, body, stopped};
+use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
 use crate::geometry::{Body, Nav, Vector};
 use crate::motion::Truth;
@@ -89,7 +89,7 @@ impl Encoder for Msp {
         let strength = now.truth.field.length();
         let mut buffer = [0; msp::MAX_LEN];
         self.latest.encode(now.t, &self.turned, out, &mut buffer, |_, newest, buffer| {
-            let value = |kind| body(newest, kind).unwrap_or(Vector::ZERO);
+            let value = |kind| newest.body(kind).unwrap_or(Vector::ZERO);
             frame(
                 [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value),
                 strength,

@@ -1,25 +1,58 @@
 //! The newest sample of each sensor, for packets that carry several.
 
 use super::Packet;
+use super::samples::Sensed;
 use crate::geometry::{Body, Vector};
-use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
+use crate::sensor::{ByKind, Kinds, Measurement, REFERENCE_TEMPERATURE, Reading, SensorKind};
 use crate::time::SimTime;
 
-/// What a sensor of this kind read last, in body axes.
-pub(super) fn body(newest: &ByKind<Option<Reading>>, kind: SensorKind) -> Option<Vector<Body>> {
-    newest[kind as usize].as_ref()?.body().map(|body| body.value)
-}
+/// What each sensor said last: a part of its reading, for a reading has six times the bytes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Told(ByKind<Option<(Sensed, f64)>>);
 
-/// The pressure that a sensor of this kind read last, Pa.
-pub(super) fn pressure(newest: &ByKind<Option<Reading>>, kind: SensorKind) -> Option<f64> {
-    newest[kind as usize].as_ref()?.pressure().map(|pressure| pressure.value)
+impl Told {
+    /// Whether a sensor of this kind said anything; of a receiver, never: a fix is not kept.
+    pub fn has(&self, kind: SensorKind) -> bool {
+        self.0[kind as usize].is_some()
+    }
+
+    /// Body axes.
+    pub fn body(&self, kind: SensorKind) -> Option<Vector<Body>> {
+        self.0[kind as usize]?.0.body()
+    }
+
+    /// Pa.
+    pub fn pressure(&self, kind: SensorKind) -> Option<f64> {
+        self.0[kind as usize]?.0.pressure()
+    }
+
+    /// Of the part, °C.
+    pub fn temperature(&self, kind: SensorKind) -> Option<f64> {
+        Some(self.0[kind as usize]?.1)
+    }
+
+    /// Says other body axes in the place of what was said, or nothing.
+    pub fn put(&mut self, kind: SensorKind, body: Option<Vector<Body>>) {
+        self.0[kind as usize] = body.map(|body| (Sensed::Body(body), REFERENCE_TEMPERATURE));
+    }
+
+    fn take_in(&mut self, reading: &Reading) {
+        let said = match &reading.measurement {
+            Measurement::Triad(triad) => Sensed::Body(triad.value),
+            Measurement::Pressure(pressure) => Sensed::Pressure(pressure.value),
+            Measurement::Position(_) => return,
+        };
+        self.0[reading.kind as usize] = Some((said, reading.temperature));
+    }
 }
 
 /// The newest sample of each sensor, for packets that carry several.
 #[derive(Debug, Default)]
 pub(super) struct Newest {
-    pub values: ByKind<Option<Reading>>,
+    pub told: Told,
     pub fresh: Kinds,
+    /// The kinds whose samples a newer one replaced before a packet carried them, and how many of each.
+    thinned: Kinds,
     replaced: ByKind<u32>,
 }
 
@@ -29,9 +62,10 @@ impl Newest {
             let i = reading.kind as usize;
             if self.fresh.contains(reading.kind) {
                 self.replaced[i] = self.replaced[i].saturating_add(1);
+                self.thinned.insert(reading.kind);
             }
             self.fresh.insert(reading.kind);
-            self.values[i] = Some(*reading);
+            self.told.take_in(reading);
         }
     }
 
@@ -43,8 +77,12 @@ impl Newest {
     /// A packet of these bytes that carries the fresh samples among `kinds`.
     pub fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
         let mut packet = Packet::new(due, self.fresh & kinds, bytes);
-        for kind in kinds.iter() {
-            packet.replaced[kind as usize] = std::mem::take(&mut self.replaced[kind as usize]);
+        let thinned = self.thinned & kinds;
+        if !thinned.is_empty() {
+            for kind in thinned.iter() {
+                packet.replaced[kind as usize] = std::mem::take(&mut self.replaced[kind as usize]);
+            }
+            self.thinned.remove(thinned);
         }
         self.fresh.remove(kinds);
         packet

@@ -10,11 +10,12 @@ mod reader;
 
 use super::latest::{CARRIED, Latest, in_units, pascals};
 use super::mavlink::MICROTESLA_A_GAUSS;
+use super::newest::Told;
 use super::row::{Row, Shared, any};
-use super::{Encoder, Now, Packet, Setup, body, stopped};
+use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::geometry::{Euler, Vector};
 use crate::motion::Truth;
-use crate::sensor::{ByKind, Kinds, REFERENCE_TEMPERATURE, Reading, SensorKind};
+use crate::sensor::{ByKind, Kinds, REFERENCE_TEMPERATURE, SensorKind};
 use crate::time::{Rate, SimTime};
 use ratetable_protocols::vectornav::{self, MAX_LEN, ahrs, imu};
 
@@ -77,7 +78,7 @@ impl Encoder for Vectornav {
             [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
         {
             let value = if kind == SensorKind::Mag && !self.has_mag { Vector::ZERO } else { value };
-            still[kind as usize] = Some(Reading::zero(0, kind).with_body(value));
+            still.put(kind, Some(value));
         }
         let mut buffer = [0; MAX_LEN];
         let len = write(t, &still, &mut buffer);
@@ -90,11 +91,10 @@ impl Encoder for Vectornav {
 }
 
 /// The IMU packet of the newest readings.
-fn write(t: SimTime, newest: &ByKind<Option<Reading>>, buffer: &mut [u8]) -> usize {
-    let warm =
-        [SensorKind::Gyro, SensorKind::Accel].into_iter().find_map(|kind| newest[kind as usize].as_ref());
-    let warm = warm.map_or(REFERENCE_TEMPERATURE, |reading| reading.temperature);
-    let [gyro, accel, mag] = SensorKind::TRIADS.map(|kind| body(newest, kind));
+fn write(t: SimTime, newest: &Told, buffer: &mut [u8]) -> usize {
+    let warm = [SensorKind::Gyro, SensorKind::Accel].into_iter().find_map(|kind| newest.temperature(kind));
+    let warm = warm.unwrap_or(REFERENCE_TEMPERATURE);
+    let [gyro, accel, mag] = SensorKind::TRIADS.map(|kind| newest.body(kind));
     let (gyro, accel) = (in_units(gyro, 1.0), in_units(accel, 1.0));
     let imu = imu::Repr {
         time_ns: t.0 as u64,
