@@ -6,11 +6,12 @@
 //!                                          └── control (this thread, tokio): dialogues ◀───┘ Ctrl-C, the command
 //! ```
 //!
-//! A prescribed motion does not depend on the wall clock, so everything is computed ahead and the pacing thread only
-//! waits and writes: the cost of the models never shows up as jitter. It allocates nothing and takes no lock.
+//! A prescribed motion does not depend on the wall clock. The producer therefore computes everything ahead, and the
+//! pacing thread only waits and writes: the cost of the models never shows up as jitter. The pacing thread
+//! allocates nothing and takes no lock.
 //!
-//! Two times go by. *Stream time* is what packets are due at, from the first one on. *Scene time* begins when the
-//! scene does: at once, or after a rest in which the vehicle is held still for the other side's estimator to settle.
+//! There are two times. *Stream time* is when packets are due, counted from the first one. *Scene time* starts with
+//! the scene: at once, or after a rest that holds the vehicle still while the estimator on the other side settles.
 
 mod absence;
 mod account;

@@ -1,12 +1,12 @@
-//! A reader that has left while nothing moves without one.
+//! Detects a reader that has left, in a run where nothing moves without a reader.
 
 use super::open::OpenOutput;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// Since when no packet has moved because a reader is gone.
+/// How long no packet has moved because a reader is gone.
 pub(super) struct Absence {
-    /// One who is away for so long has left for good.
+    /// A reader that is away this long has left for good.
     limit: Duration,
     packets: u64,
     since: Instant,
@@ -17,7 +17,7 @@ impl Absence {
         Absence { limit, packets: 0, since: Instant::now() }
     }
 
-    /// Whether a reader has left for good, where so many packets were sent; its output is marked.
+    /// Whether a reader has left for good, given the number of packets sent so far. Marks its output.
     pub(super) fn look(&mut self, packets: u64, outputs: &mut [OpenOutput]) -> bool {
         let still = packets == self.packets;
         let left = outputs.iter_mut().find(|it| still && it.link.peer_has_left());

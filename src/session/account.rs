@@ -1,4 +1,4 @@
-//! What came of the outputs of a run.
+//! The final account of each output of a run.
 
 use super::feed::Made;
 use super::left::Left;
@@ -7,18 +7,19 @@ use crate::report::SensorReport;
 use crate::sensor::SensorPlan;
 use std::io::ErrorKind;
 
-/// What was made for one output, and what became of it.
+/// What was made for one output, and what happened to it.
 #[derive(Debug, Default)]
 pub(super) struct Account {
     pub made: Made,
     pub tally: Tally,
     pub left: Left,
-    /// Why its link took nothing any more.
+    /// Why its link stopped taking packets.
     pub end: Option<ErrorKind>,
 }
 
 impl Account {
-    /// A sensor's report: counts summed over outputs, histograms merged. `paced` says whether lateness means anything.
+    /// A sensor's report: counts summed over outputs, histograms merged. `paced` says whether lateness is
+    /// meaningful.
     pub(super) fn sensor(accounts: &[Account], sensor: &SensorPlan, paced: bool) -> SensorReport {
         let kind = sensor.kind as usize;
         let sum = |of: fn(&Account, usize) -> u64| accounts.iter().map(|it| of(it, kind)).sum();

@@ -1,4 +1,4 @@
-//! The link budget: bytes a second that an output needs against what its baud rate carries.
+//! The link budget: the bytes a second that an output needs against what its baud rate carries.
 
 use super::ways_out::WaysOut;
 use crate::link::bytes_per_second;
@@ -8,26 +8,26 @@ use crate::sensor::SensorPlan;
 use crate::wire::{self, Protocol, Setup};
 use std::fmt;
 
-/// What an output asks of its link, and what the link has.
+/// What an output needs of its link, and what the link carries.
 ///
-/// Eight data bits, no parity and one stop bit take ten bits a byte with their start bit, so a baud rate carries a
-/// tenth of it in bytes a second. What is needed is found by encoding ten seconds of the scene's own ticks.
+/// Eight data bits, no parity, one start and one stop bit make ten bits a byte, so a baud rate carries a tenth of
+/// it in bytes a second. The need is measured by encoding ten seconds of the scene's own ticks.
 #[derive(Clone, Debug)]
 pub struct Budget {
-    /// The output as it was asked for.
+    /// The output as requested.
     pub to: Destination,
     /// Packets a second.
     pub packets_per_s: f64,
-    /// Their bytes.
+    /// Bytes a second in those packets.
     pub bytes_per_s: f64,
-    /// Bytes a second that the baud rate carries, where there is one.
+    /// Bytes a second that the baud rate carries; `None` without a baud rate.
     pub capacity: Option<f64>,
-    /// What would fit, a sentence each with its number; empty where all fits.
+    /// Changes that would make it fit, one sentence each with its number; empty where everything fits.
     pub ways_out: Vec<String>,
 }
 
 impl Budget {
-    /// Of one output of a plan that is played at `speed` scene seconds a second.
+    /// The budget of one output of a plan that plays at `speed` scene seconds a second.
     pub fn of(plan: &Plan, output: &Output, speed: f64) -> Budget {
         let load = |sensors: &[SensorPlan], protocol: Protocol, options: wire::Options| {
             let (bytes, packets) = wire::load(
@@ -53,22 +53,22 @@ impl Budget {
         budget
     }
 
-    /// Of every output.
+    /// The budget of every output.
     pub fn all(plan: &Plan, outputs: &[Output], speed: f64) -> Vec<Budget> {
         outputs.iter().map(|output| Budget::of(plan, output, speed)).collect()
     }
 
-    /// The needed part of what the link carries.
+    /// The needed share of the link's capacity.
     pub fn share(&self) -> Option<f64> {
         self.capacity.map(|capacity| self.bytes_per_s / capacity)
     }
 
-    /// Whether the link carries it.
+    /// Whether the link carries the output.
     pub fn fits(&self) -> bool {
         self.share().is_none_or(|share| share <= 1.0)
     }
 
-    /// What it needs and what the link carries, in a line.
+    /// The need and the capacity, in one line.
     pub fn arithmetic(&self) -> String {
         let (packets, bytes) = (number(self.packets_per_s), number(self.bytes_per_s));
         let needs = format!("{} needs {bytes} bytes/s ({packets} packets/s)", self.to);
@@ -84,18 +84,19 @@ impl Budget {
 }
 
 impl fmt::Display for Budget {
-    /// The arithmetic, then each way out in a line of its own.
+    /// The arithmetic, then each way out on its own line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.arithmetic())?;
         self.ways_out.iter().try_for_each(|way| write!(f, "\n  - {way}"))
     }
 }
 
-/// Refuses an output whose link is too slow for it, unless `force` is set, for all or for this output, or its overload
-/// policy stretches scene time. It then calls `warn` with the arithmetic and the consequence.
+/// Rejects an output whose link is too slow for it. It does not reject where `force` is set for all outputs or for
+/// this one, or where the overload policy stretches scene time; it then calls `warn` with the arithmetic and the
+/// consequence.
 ///
 /// # Errors
-/// What is refused, with what would fit, a line each.
+/// Each rejected output with what would fit, one line each.
 pub fn afford(
     plan: &Plan,
     outputs: &[Output],
@@ -133,7 +134,7 @@ mod tests {
 
     #[test]
     fn what_is_needed_is_what_packet_lengths_give_by_hand() {
-        // 24 bytes an imu packet, 18 a mag, 20 a config a second.
+        // 24 bytes an imu packet, 18 a mag packet, and one config packet of 20 bytes a second.
         let by_hand = 1000.0 * 24.0 + 100.0 * 18.0 + 20.0;
         for (to, speed, capacity) in [
             ("to = \"mpu@/dev/ttyUSB0,460800\"\n", 1.0, Some(46_080.0)),
@@ -152,7 +153,7 @@ mod tests {
     #[test]
     fn each_way_out_has_its_number_and_only_those_that_are_ways_are_named() {
         let ways = |scene: &str, output: &str| budget(scene, output, 1.0).ways_out.join("\n");
-        // Packets of their own are shorter when the accelerometer is slow.
+        // A slow accelerometer gets separate packets, which are shorter.
         let slow = "[gyro]\nrate = \"1 kHz\"\n[accel]\nrate = \"10 Hz\"\n";
         let burst = ways(slow, "to = \"mpu@pty,200000\"\nlayout = \"burst\"\n");
         assert!(burst.contains("other packets: layout = \"separate\" needs 16180 bytes/s"), "{burst}");
@@ -167,7 +168,7 @@ mod tests {
             none.contains("no standard baud rate carries it: it takes 8") && !none.contains("stretch"),
             "{none}"
         );
-        // Once a second: no rate is low enough for a line of ten bytes a second, and none is offered.
+        // Even at 1 Hz no rate is low enough for a link of ten bytes a second, so no rate is offered.
         let hopeless = ways("[gyro]\nrate = \"1 Hz\"\n", "to = \"mpu@pty,100\"\n");
         assert!(!hopeless.contains("lower rate"), "{hopeless}");
     }

@@ -7,7 +7,7 @@ use std::process::{ExitStatus, Stdio};
 use std::time::Duration;
 use tokio::process::{Child, Command};
 
-/// How long the program may go on after its link was closed, and after it was asked to end.
+/// How long the program may keep running after its link closes, and again after it is asked to end.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The program, if there is one.
@@ -15,14 +15,14 @@ const PATIENCE: Duration = Duration::from_secs(2);
 pub(super) struct Program(Option<Child>);
 
 impl Program {
-    /// Starts a command, if there is one; `link` replaces every `{}` and is in `$RATETABLE_LINK`.
+    /// Starts a command, if there is one. `link` replaces every `{}` and is also in `$RATETABLE_LINK`.
     pub(super) fn start(command: &[String], link: &str, keep_stdout: bool) -> Result<Program, SessionError> {
         let [program, arguments @ ..] = command else { return Ok(Program(None)) };
         let place = |text: &String| text.replace("{}", link);
         let mut start = Command::new(place(program));
         start.args(arguments.iter().map(place)).env("RATETABLE_LINK", link).kill_on_drop(true);
         if keep_stdout {
-            // Standard output is for our JSON: the program's joins ours on standard error.
+            // Standard output carries our JSON, so the program's output goes to standard error with ours.
             start.stdout(rustix::io::dup(rustix::stdio::stderr()).map_or(Stdio::null(), Stdio::from));
         }
         let child = start.spawn();
@@ -30,7 +30,7 @@ impl Program {
         Ok(Program(Some(child)))
     }
 
-    /// Its exit code, once it has ended by itself; where there is none, its end never comes.
+    /// Its exit code once it ends by itself; never resolves without a program.
     pub(super) async fn ended(&mut self) -> i32 {
         match &mut self.0 {
             Some(child) => child.wait().await.map_or(1, code),
@@ -38,7 +38,7 @@ impl Program {
         }
     }
 
-    /// Waits for it now that the run is over: `None` if there is none or it had to be ended.
+    /// Waits for the program after the run is over: `None` if there is none or it had to be killed.
     pub(super) async fn end(self) -> Option<i32> {
         let mut child = self.0?;
         if let Ok(Ok(status)) = tokio::time::timeout(PATIENCE, child.wait()).await {

@@ -1,4 +1,4 @@
-//! The control side of a run: opens links, starts the threads, attends to the user and to the other sides, ends
+//! The control side of a run: opens links, starts the threads, serves the user and the other sides, and ends
 //! cleanly.
 
 use super::absence::Absence;
@@ -33,21 +33,21 @@ use tokio::time::{Instant, interval, sleep};
 
 /// Packets made ahead, 2.6 MB: about a second of the fastest sensors, and seven at 1 kHz.
 const RING: usize = 8192;
-/// Between two reports of progress.
+/// Time between two progress reports.
 const PROGRESS: Duration = Duration::from_millis(100);
-/// Between two looks at the links.
+/// Time between two looks at the links.
 const LOOK: Duration = Duration::from_millis(20);
-/// At full speed nothing moves without a reader; one who is away for so long has left for good.
+/// At full speed nothing moves without a reader. A reader that is away this long has left for good.
 const ABSENCE: Duration = Duration::from_secs(5);
-/// For answers that are still on their way when the last packet is out.
+/// Time for answers that are still on their way when the last packet is sent.
 const LAST_ANSWERS: Duration = Duration::from_millis(200);
-/// A link that does not take a farewell for so long does not get it.
+/// A link that does not take a farewell within this time does not get it.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// Runs a job to its end, to Ctrl-C or to the command's end, and tells `on` what happens meanwhile.
+/// Runs a job until it ends, the user presses Ctrl-C or the command ends; reports events to `on` meanwhile.
 ///
 /// # Errors
-/// A link that cannot be opened, nobody on the other side in time, a command that does not start.
+/// A link does not open, nobody connects in time, or a command does not start.
 pub fn run(job: Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
     run_with(job, ABSENCE, on)
 }
@@ -67,9 +67,9 @@ struct Control {
     talk: Rc<RefCell<Talk>>,
     ears: Ears,
     hold: Hold,
-    /// Where nothing moves without a reader and nothing else ends the run.
+    /// Set where nothing moves without a reader and nothing else ends the run.
     absence: Option<Absence>,
-    /// Why it ended before the scene began.
+    /// Why the run ended before the scene began.
     failed: Option<SessionError>,
 }
 
@@ -81,7 +81,7 @@ impl Control {
         control.outputs.iter().for_each(|output| output.introduce(&mut outside));
         let (ring, consumer) = rtrb::RingBuffer::new(RING);
         let mut producing = Producing::NotYet(ring);
-        // What does not depend on what the other side says is made while it is waited for.
+        // Packets that do not depend on the other side's answers are made during the wait.
         if control.talk.borrow().silent().is_none() {
             producing = control.start(producing);
         }
@@ -117,7 +117,7 @@ impl Control {
         let shared = Arc::new(Shared::before(job.rest));
         let lockstep = job.outputs.iter().any(step::in_lockstep);
         let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
-        // Paced, a packet that nobody reads is dropped and counted; and a command ends the run by ending.
+        // A paced run drops and counts a packet that nobody reads, and a command ends the run when it ends.
         let waits = !job.speed.is_paced() && job.command.is_empty();
         Ok(Control {
             shared,
@@ -132,7 +132,7 @@ impl Control {
         })
     }
 
-    /// Opens the way to a ground station, and listens to it.
+    /// Opens the link to a ground station, and listens to it.
     async fn open_ground(&mut self, outside: &mut Outside<'_>) -> Result<(), SessionError> {
         let Some((address, output)) = &self.job.ground else { return Ok(()) };
         let mut link = Link::open(address).await?;
@@ -144,13 +144,13 @@ impl Control {
         Ok(())
     }
 
-    /// Starts the producer thread if it is not started yet.
+    /// Starts the producer thread if it has not started.
     fn start(&self, producing: Producing) -> Producing {
         let talk = self.talk.borrow();
         producing.start(&self.job, &self.shared, talk.sides.iter().map(Side::peer))
     }
 
-    /// True when somebody is on every link and every other side may be sent samples; false when the user or the command
+    /// True when every link has somebody and every other side accepts samples; false when the user or the command
     /// ended the wait.
     async fn wait(&mut self, outside: &mut Outside<'_>) -> Result<bool, SessionError> {
         let waited = self.job.wait;
@@ -174,7 +174,7 @@ impl Control {
         }
     }
 
-    /// True when every other side may be sent samples; false when the user or the command ended the wait.
+    /// True when every other side accepts samples; false when the user or the command ended the wait.
     async fn wait_to_be_heard(&mut self, outside: &mut Outside<'_>) -> Result<bool, SessionError> {
         let waited = self.job.wait;
         let deadline = Instant::now() + waited;
@@ -200,7 +200,7 @@ impl Control {
         }
     }
 
-    /// Tells of a controller that asks for more than the scene has.
+    /// Reports a controller that asks for higher rates than the scene has.
     fn compare_rates(&self, outside: &mut Outside<'_>) {
         let sensors = self.job.plan.sensors.iter();
         let Some(fastest) = sensors.max_by(|a, b| a.rate.as_hz().total_cmp(&b.rate.as_hz())) else { return };
@@ -224,7 +224,7 @@ impl Control {
         Pacer { pace, ring, lanes }
     }
 
-    /// Reports progress until the pacing thread has ended, or the user, the command or a reader that is gone ends it.
+    /// Reports progress until the pacing thread ends, or until the user, the command or a departed reader ends it.
     async fn attend(&mut self, pacing: &mut Pacing, outside: &mut Outside<'_>) {
         if let Some(refused) = pacing.refused().await {
             outside.notice(refused);
@@ -266,14 +266,14 @@ impl Control {
         }
     }
 
-    /// What is due by itself in the conversations, and what the other sides gave notice of.
+    /// Sends what the conversations have due, and passes on notices from the other sides.
     fn tick(&self, outside: &mut Outside<'_>) {
         self.talk.borrow_mut().tick(self.clock.now());
         let notices = self.talk.borrow_mut().take_notices();
         notices.into_iter().for_each(|notice| outside.notice(notice));
     }
 
-    /// Whether the scene may begin, has begun, or is not waited for any more.
+    /// Checks whether the scene may begin, has begun, or waited too long.
     fn look_on(&mut self, outside: &mut Outside<'_>) {
         let unready = {
             let talk = self.talk.borrow();
@@ -292,7 +292,7 @@ impl Control {
         }
     }
 
-    /// Lets the other side take what was sent, closes everything, and adds up.
+    /// Lets the other side read what was sent, closes everything, and adds up the counts.
     async fn finish(
         mut self,
         outside: Outside<'_>,
@@ -337,7 +337,7 @@ impl Control {
         })
     }
 
-    /// Leaves every other side with a vehicle that has stopped, and with all that was sent.
+    /// Sends every other side a stationary vehicle as farewell, and everything that is still kept.
     async fn take_leave(&self, lanes: &mut [Lane], feeds: &mut [Feed]) {
         let t = self.shared.sent() + SimTime(1);
         let deadline = Instant::now() + FAREWELL;
@@ -347,16 +347,16 @@ impl Control {
         lanes.iter_mut().for_each(Lane::finish);
     }
 
-    /// The end if all was played, else where the last packet was due.
+    /// The end of the scene if everything was played, else the due time of the last packet.
     fn played(&self, lanes: &[Lane], outside: &Outside<'_>) -> SimTime {
         let stopped = outside.has_ended() || self.outputs.iter().any(|output| output.abandoned);
         let cut_short = stopped || !lanes.iter().any(Lane::is_open);
-        // An end is exclusive: a nanosecond on, so that the last packet is within.
+        // An end is exclusive: add a nanosecond so that the last packet is within.
         let last = self.shared.scene_time(self.shared.sent()).map_or(SimTime::ZERO, |t| t + SimTime(1));
         if cut_short { last.min(self.job.end) } else { self.job.end }
     }
 
-    /// What came of the outputs.
+    /// Collects the outcome of the run from the accounts of its outputs.
     fn outcome(&self, accounts: &[Account]) -> Outcome {
         let (plan, paced) = (&self.job.plan, self.job.speed.is_paced());
         let talk = self.talk.borrow();
@@ -396,7 +396,7 @@ mod tests {
         let outputs = vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())];
         let job = Job { speed: Speed::Max, wait: Duration::from_secs(60), ..Job::new(plan, outputs) };
         let read_a_while = move || {
-            // Away for less than is allowed, it may come back.
+            // A reader that is away for less than the limit may come back.
             for _ in 0..2 {
                 let mut port =
                     OpenOptions::new().read(true).custom_flags(libc::O_NOCTTY).open(&path).unwrap();

@@ -1,4 +1,4 @@
-//! The control side's ears: tasks that read what comes back, each holding its link open.
+//! The control side's receivers: tasks that read what comes back. Each holds its link open.
 
 use super::Tap;
 use super::talk::Talk;
@@ -9,16 +9,16 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use tokio::task::{JoinHandle, spawn_local};
 
-/// All of them.
+/// All receiving tasks.
 #[derive(Default)]
 pub(super) struct Ears {
     tasks: Vec<JoinHandle<()>>,
-    /// Whether one hears for a tap.
+    /// Whether one of them feeds a tap.
     pub tapped: bool,
 }
 
 impl Ears {
-    /// Hands on what a link receives to a tap.
+    /// Passes what a link receives to a tap.
     pub(super) fn tap(&mut self, receiver: Receiver, tap: Tap) {
         self.tasks.push(spawn_local(tapped(receiver, tap)));
         self.tapped = true;
@@ -40,19 +40,19 @@ impl Ears {
         self.tasks.push(spawn_local(listen_to_ground(receiver, talk.clone())));
     }
 
-    /// Listens no more.
+    /// Stops listening.
     pub(super) async fn close(&mut self) {
         for task in &self.tasks {
             task.abort();
         }
         for task in self.tasks.drain(..) {
-            // Only when its task is gone does a link's descriptor close, and the other side see the end.
+            // A link's descriptor closes, and the other side sees the end, only when its task is gone.
             let _ = task.await;
         }
     }
 }
 
-/// Hands on what one link receives until the other side leaves.
+/// Passes what one link receives to a tap until the other side leaves.
 async fn tapped(mut receiver: Receiver, mut tap: Tap) {
     let mut buffer = BytesMut::with_capacity(4096);
     while matches!(receiver.recv(&mut buffer).await, Ok(1..)) {
@@ -61,8 +61,8 @@ async fn tapped(mut receiver: Receiver, mut tap: Tap) {
     }
 }
 
-/// Reads one link until the other side leaves; what has no meaning here is read all the same, so that nothing stands
-/// in the other side's way.
+/// Reads one link until the other side leaves. It also reads bytes without a meaning here, so that the other side
+/// never blocks.
 async fn listen(link: usize, mut receiver: Receiver, talk: Rc<RefCell<Talk>>, clock: WallClock) {
     let mut buffer = BytesMut::with_capacity(4096);
     while matches!(receiver.recv(&mut buffer).await, Ok(1..)) {
@@ -71,14 +71,14 @@ async fn listen(link: usize, mut receiver: Receiver, talk: Rc<RefCell<Talk>>, cl
     }
 }
 
-/// Reads what a ground station sends, a datagram at a time. One that is not there yet may come.
+/// Reads what a ground station sends, one datagram at a time. A station that is not there yet may come later.
 async fn listen_to_ground(mut receiver: Receiver, talk: Rc<RefCell<Talk>>) {
     let mut buffer = BytesMut::with_capacity(4096);
     loop {
         buffer.clear();
         match receiver.recv(&mut buffer).await {
             Ok(1..) => talk.borrow_mut().pass_down(&buffer),
-            // Of a socket: a port unreachable, said of a datagram before.
+            // A socket reports "port unreachable" here for an earlier datagram.
             Ok(0) | Err(_) => tokio::time::sleep(super::shared::TICK).await,
         }
     }

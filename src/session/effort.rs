@@ -1,9 +1,9 @@
-//! What the pacing thread costs.
+//! CPU use of the pacing thread.
 
 use crate::os;
 use std::time::Duration;
 
-/// How much of a core the calling thread uses, pauses left out.
+/// The share of a core that the calling thread uses, without pauses.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Effort {
     used: Duration,
@@ -12,12 +12,12 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// Counts from now (ns) on.
+    /// Counts from `now` (ns).
     pub(super) fn resume(&mut self, now: i64) {
         self.since = Some((os::thread_cpu_time(), now));
     }
 
-    /// Counts up to now.
+    /// Counts up to `now` (ns).
     pub(super) fn pause(&mut self, now: i64) {
         if let Some((used, began)) = self.since.take() {
             self.used += os::thread_cpu_time().saturating_sub(used);
@@ -25,7 +25,7 @@ impl Effort {
         }
     }
 
-    /// The share of a core; `None` before anything was counted.
+    /// The share of a core; `None` before anything is counted.
     pub(super) fn share(&self) -> Option<f64> {
         (self.spent > 0).then(|| self.used.as_secs_f64() / (self.spent as f64 * 1e-9))
     }

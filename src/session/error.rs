@@ -1,32 +1,32 @@
-//! Why nothing could be run.
+//! Why a run could not start.
 
 use crate::link::LinkError;
 use crate::time::SimTime;
 use std::time::Duration;
 
-/// Why nothing could be run.
+/// Why a run could not start.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SessionError {
-    /// A link could not be opened or broke while waiting.
+    /// A link did not open, or broke during the wait.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Nobody came.
+    /// Nobody connected.
     #[error("nobody came to {link} in {}: open it from the other side, or wait longer with --wait TIME, or start at once with --wait 0", seconds(*waited))]
     Nobody {
         /// What to connect to.
         link: String,
-        /// For how long we waited.
+        /// How long the run waited.
         waited: Duration,
     },
-    /// A controller never said what it begins with.
+    /// A controller never sent its opening messages.
     #[error("{link} was not heard in {}: {came}; wait longer with --wait TIME, or start at once with --wait 0", seconds(*waited))]
     Unheard {
         /// What to connect to.
         link: String,
-        /// For how long we waited.
+        /// How long the run waited.
         waited: Duration,
-        /// What came instead, and what may be wrong.
+        /// What arrived instead, and what may be wrong.
         came: String,
     },
     /// A controller's estimator did not settle.
@@ -36,12 +36,12 @@ pub enum SessionError {
     NotReady {
         /// What to connect to.
         link: String,
-        /// For how long it was fed the vehicle at rest.
+        /// How long it received the vehicle at rest.
         rested: SimTime,
-        /// What came of it.
+        /// What it reported.
         came: String,
     },
-    /// The command could not be started.
+    /// The command did not start.
     #[error("`{program}` could not be started: {source}")]
     Command {
         /// The program.
@@ -49,10 +49,10 @@ pub enum SessionError {
         /// Why.
         source: std::io::Error,
     },
-    /// The system refused what every run needs.
+    /// The system refused something that every run needs.
     #[error("could not {doing}: {source}")]
     System {
-        /// What was tried.
+        /// What the run tried.
         doing: &'static str,
         /// Why not.
         source: std::io::Error,

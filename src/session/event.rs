@@ -1,47 +1,47 @@
-//! What a run tells while it goes on.
+//! Events that a run reports while it goes on.
 
 use super::off::Off;
 use crate::time::SimTime;
 use std::time::Duration;
 
-/// What happens meanwhile.
+/// An event during a run.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event<'a> {
     /// Something the user should know.
     Notice(String),
-    /// A link is open: protocol and what to connect to.
+    /// A link is open: its protocol and what to connect to.
     Ready(&'a str),
-    /// A ground station is spoken to there.
+    /// A ground station link is open at this address.
     Ground(&'a str),
-    /// Nobody has come to that link yet: until that is so for this long, it is waited for somebody.
+    /// Nobody has connected to that link yet, and the run waits.
     Waiting {
-        /// Who is waited for, and where.
+        /// Whom the run waits for, and where.
         whom: String,
-        /// From now on, at the most.
+        /// The longest remaining wait.
         left: Duration,
     },
-    /// The controller on that link is waited for: nothing is streamed before it is heard.
+    /// The controller on that link has not spoken yet: nothing is streamed before it does.
     Silent(&'a str),
     /// The stream starts with the vehicle held still.
     Still,
     /// The scene starts.
     Started,
-    /// How far it is.
+    /// Progress of the run.
     Progress(Progress),
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// Scene time; while the vehicle is held still, for how long.
+    /// Scene time; during the rest, how long the vehicle has been held still.
     pub t: SimTime,
-    /// Whether it is held still before the scene.
+    /// Whether this is the rest before the scene.
     pub still: bool,
     /// Packets sent.
     pub packets: u64,
     /// Samples lost.
     pub dropped: u64,
-    /// How far the newest estimate is off.
+    /// Error of the newest estimate.
     pub error: Option<Off>,
 }

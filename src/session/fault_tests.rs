@@ -1,4 +1,4 @@
-//! Faults of outputs: what was injected is what a receiver counts, and the account stays whole.
+//! Faults of outputs: a receiver counts exactly what was injected, and the account balances.
 
 use super::feed::Made;
 use super::tests::{accounts_balance, memory, pacer, plan, produce};
@@ -23,15 +23,15 @@ fn fault(kind: &str, more: &str) -> String {
     format!("[[fault]]\nkind = \"{kind}\"\nstart = \"200 ms\"\nduration = \"500 ms\"\n{more}\n")
 }
 
-/// Bytes, each with when they had arrived.
+/// Bytes, each block with its arrival time.
 type Arrivals = Vec<(i64, Vec<u8>)>;
 
-/// A virtual clock that notes what has arrived whenever it moves on.
+/// A virtual clock that records what has arrived whenever it advances.
 struct Noting {
     now: i64,
     far: Far,
     seen: Arc<Mutex<Arrivals>>,
-    /// When everything is told to stop.
+    /// When to stop everything.
     stop: Option<(i64, Arc<Shared>)>,
 }
 
@@ -52,11 +52,11 @@ impl Clock for Noting {
     }
 }
 
-/// A run of the first output alone, that is over.
+/// A finished run of the first output alone.
 struct Ran {
     made: Made,
     sent: u64,
-    /// What came, and when.
+    /// What arrived, and when.
     seen: Arrivals,
 }
 
@@ -101,7 +101,7 @@ fn play(protocol: &str, faults: &str) -> Ran {
     run(&scene(protocol, faults), Speed::Times(1.0))
 }
 
-/// Of N packets, a share p within five standard deviations.
+/// Whether `count` of n packets is a share p, within five standard deviations.
 fn is_about(count: u64, n: f64, p: f64) -> bool {
     (count as f64 - n * p).abs() < 5.0 * (n * p * (1.0 - p)).sqrt()
 }
@@ -114,7 +114,7 @@ fn a_receiver_counts_exactly_what_was_injected() {
         let (none, all) = clean.received(protocol);
         assert_eq!((none.lost, none.damaged, none.duplicates, none.out_of_order), (0, 0, 0, 0), "control");
         assert_eq!((all, &clean.made.samples[..3]), ([1000, 1000, 100], &[1000, 1000, 100][..]));
-        // In 500 ms: mpu has imu and mag packets, mavlink one for both.
+        // In 500 ms mpu sends imu and mag packets, mavlink one packet for both.
         let n = if name == "mpu" { 550.0 } else { 500.0 };
         for (kind, p) in [("drop", 0.2), ("corrupt", 0.2), ("duplicate", 0.2), ("reorder", 0.2 / 1.2)] {
             let ran = play(name, &fault(kind, "share = \"20 %\""));
@@ -127,7 +127,7 @@ fn a_receiver_counts_exactly_what_was_injected() {
             assert_eq!(counts.damaged, of("corrupt"), "{name} {kind}");
             assert_eq!(ran.sent, clean.sent - of("drop") + of("duplicate"), "{name} {kind}");
             assert_eq!(counts.packets + of("corrupt"), ran.sent, "{name} {kind}");
-            // Samples come as often as the account says, but for those in hurt packets.
+            // As many samples arrive as the account says, except those in damaged packets.
             let (made, came): (u64, u64) = (ran.made.samples.iter().sum(), samples.iter().sum());
             assert!(
                 if kind == "corrupt" { came < made } else { came == made },
@@ -149,7 +149,7 @@ fn flips_may_hit_the_framing_if_asked_and_then_cost_neighbours_too() {
     let ran = play("mpu", &fault("corrupt", "share = \"100 %\"\nbits = 64\nhurts = \"framing\""));
     let (counts, _) = ran.received(Protocol::Mpu);
     assert_eq!(ran.acted(), 550);
-    // Half of the zeros that end packets are hurt, so that two become one.
+    // Half of the zeros that end packets are damaged, which merges two packets into one.
     assert!(counts.damaged != 550, "{}", counts.damaged);
     let spared = play("mpu", &fault("corrupt", "share = \"100 %\"\nbits = 64"));
     assert_eq!(spared.received(Protocol::Mpu).0.damaged, 550, "control: each costs itself alone");
@@ -169,7 +169,7 @@ fn a_stall_holds_everything_back_and_lets_it_out_at_once() {
         clean.seen.iter().filter(|(when, _)| (200..=700).contains(&(when / MS))).map(|it| it.1.len()).sum();
     assert_eq!(burst, held);
     assert_eq!(ran.seen.iter().filter(at(701)).count(), 1, "and then goes on");
-    // One that outlasts the scene ends with it.
+    // A stall that outlasts the scene ends with it.
     let late = play("mpu", "[[fault]]\nkind = \"stall\"\nstart = \"900 ms\"\nduration = \"5 s\"\n");
     assert_eq!((late.bytes(), late.acted()), (clean.bytes(), 110));
     assert!(late.seen.iter().all(|(when, _)| *when < 1000 * MS));
@@ -179,7 +179,7 @@ fn a_stall_holds_everything_back_and_lets_it_out_at_once() {
 fn a_split_packet_goes_out_in_pieces_a_gap_apart() {
     let ran = play("mpu", &fault("split", "pieces = 3\ngap = \"200 us\""));
     let clean = play("mpu", "");
-    // Every ten a mag packet follows: the first is then whole before the second begins.
+    // A mag packet follows every tenth imu packet: the first is then whole before the second begins.
     for k in (200..700).filter(|k| k % 10 != 0) {
         let pieces: Vec<_> = ran.seen.iter().filter(|(when, _)| when / MS == k).collect();
         let whole = &clean.seen.iter().find(|(when, _)| when / MS == k).unwrap().1;
@@ -187,7 +187,7 @@ fn a_split_packet_goes_out_in_pieces_a_gap_apart() {
         let lens: Vec<_> = pieces.iter().map(|(when, bytes)| (when % MS / 1000, bytes.len())).collect();
         assert_eq!(lens, [(0, third), (200, third), (400, whole.len() - 2 * third)], "at {k} ms");
     }
-    // With pieces further apart than packets the next one brings the rest.
+    // Where the gap between pieces is longer than that between packets, the next packet brings the rest.
     let slow = play("mpu", &fault("split", "gap = \"3 ms\""));
     assert_eq!(slow.bytes(), clean.bytes());
 }

@@ -1,4 +1,4 @@
-//! All that the producer thread has of one output.
+//! The producer thread's half of an output.
 
 use crate::player::Moment;
 use crate::scene::{Output, Plan};
@@ -7,34 +7,34 @@ use crate::time::SimTime;
 use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Protocol, Setup, dialogue::Peer};
 use std::collections::BTreeMap;
 
-/// The producer's half of an output: it makes packets of readings, and lets the output's faults act on them.
+/// The producer's half of an output: makes packets of readings and applies the output's faults to them.
 pub(super) struct Feed {
-    /// One that has no place for a sensor makes no samples of it.
+    /// A protocol without a field for a sensor makes no samples of it.
     protocol: Protocol,
     encoder: Box<dyn Encoder>,
     faults: Option<Faults>,
-    /// What goes wrong goes wrong in the scene.
+    /// Faults apply only within the scene.
     in_scene: bool,
     /// Samples and packets made so far.
     samples: ByKind<u64>,
     packets: u64,
-    /// What was made last.
+    /// The packets made last.
     newest: Vec<Packet>,
 }
 
 /// What was made for one output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Made {
-    /// Samples, and those among them that still wait in the encoder for a packet, of each kind.
+    /// Samples of each kind, and those that still wait in the encoder for a packet.
     pub samples: ByKind<u64>,
     pub waiting: ByKind<u64>,
     pub packets: u64,
-    /// What each fault has done.
+    /// What each fault did.
     pub faults: Vec<Acts>,
 }
 
 impl Feed {
-    /// Of the run's output `i`, with what is known of its other side.
+    /// The feed of output `i` of the run, given what is known of its other side.
     pub(super) fn new(plan: &Plan, i: usize, output: &Output, peer: Peer) -> Feed {
         let protocol = output.to.protocol;
         let setup =
@@ -50,12 +50,12 @@ impl Feed {
         }
     }
 
-    /// Whether what it makes may go out at another time than that of its readings.
+    /// Whether a packet may go out at another time than that of its readings.
     pub(super) fn is_faulty(&self) -> bool {
         self.faults.is_some()
     }
 
-    /// The scene begins at the stream time `t`.
+    /// Marks the stream time `t` at which the scene begins.
     pub(super) fn scene_starts(&mut self, t: SimTime) {
         self.in_scene = true;
         if let Some(faults) = &mut self.faults {
@@ -63,7 +63,7 @@ impl Feed {
         }
     }
 
-    /// Packets of the readings at a moment of the stream, while it is sent as far as `sent`.
+    /// The packets of the readings at one moment of the stream; everything up to `sent` has gone out.
     pub(super) fn make(&mut self, moment: &Moment<'_>, sent: SimTime) -> &[Packet] {
         let Moment { t, truth, readings } = *moment;
         for reading in readings.iter().filter(|reading| self.protocol.carries(reading.kind)) {
@@ -78,7 +78,7 @@ impl Feed {
         self.count()
     }
 
-    /// At the end: what faults still hold goes out.
+    /// Ends the stream: releases what faults still hold.
     pub(super) fn end(&mut self) -> &[Packet] {
         self.newest.clear();
         if let Some(faults) = &mut self.faults {
@@ -92,14 +92,14 @@ impl Feed {
         &self.newest
     }
 
-    /// What leaves the other side with a vehicle that has stopped at `t`; it is no part of the stream.
+    /// Packets that show the other side a vehicle that has stopped at `t`; they are not part of the stream.
     pub(super) fn farewell(&mut self, t: SimTime) -> &[Packet] {
         self.newest.clear();
         self.encoder.farewell(t, &mut self.newest);
         &self.newest
     }
 
-    /// What was made in all.
+    /// Totals of what was made.
     pub(super) fn made(self) -> Made {
         Made {
             samples: self.faults.as_ref().map_or(self.samples, |faults| faults.account(self.samples)),
@@ -111,12 +111,12 @@ impl Feed {
 }
 
 impl Made {
-    /// Counts what faults did up to, not including, the stream time `t`.
+    /// Counts what faults did before the stream time `t`.
     pub(super) fn settle(&mut self, t: SimTime) {
         self.faults.iter_mut().for_each(|acts| acts.settle(t));
     }
 
-    /// The packets that each kind of the output's faults acted on.
+    /// The number of packets that each kind of the output's faults acted on.
     pub(super) fn by_fault(&self, output: &Output) -> BTreeMap<&'static str, u64> {
         let mut all: BTreeMap<_, _> = output.faults.iter().map(|fault| (fault.kind.name(), 0)).collect();
         self.faults.iter().for_each(|acts| *all.entry(acts.kind.name()).or_default() += acts.packets);

@@ -1,16 +1,16 @@
-//! When a port was pulled out, and what that cost.
+//! When a port was unplugged, and what that cost.
 
 use crate::report;
 
-/// When a port was pulled out.
+/// When a port was unplugged.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gaps {
     pub count: u64,
     pub total_ns: i64,
-    /// Packets dropped meanwhile, and the samples in them.
+    /// Packets dropped while it was away, and their samples.
     pub dropped: u64,
     pub samples: u64,
-    /// When it was found gone, while it is.
+    /// When it was found gone, while it is away.
     since: Option<i64>,
 }
 
@@ -23,7 +23,7 @@ impl Gaps {
         }
     }
 
-    /// Counts a packet and its samples that were lost, if that is why.
+    /// Counts a lost packet and its samples, if the port is away.
     pub(super) fn lost(&mut self, samples: u64) {
         if self.since.is_some() {
             self.dropped += 1;
@@ -31,14 +31,14 @@ impl Gaps {
         }
     }
 
-    /// It took a packet again, or nothing more is to be sent.
+    /// The port took a packet again, or the run is over.
     pub(super) fn end(&mut self, now: i64) {
         if let Some(since) = self.since.take() {
             self.total_ns += now - since;
         }
     }
 
-    /// As in a report; `None` where it never happened.
+    /// The entry for the report; `None` if it never happened.
     pub(super) fn report(&self) -> Option<report::Gaps> {
         (self.count > 0).then_some(report::Gaps {
             count: self.count,

@@ -1,4 +1,4 @@
-//! What the pacing thread asks of the system, and what it got.
+//! What the pacing thread asks of the system, and what it gets.
 
 use crate::os;
 
@@ -12,17 +12,17 @@ pub(super) struct Granted {
     pub memory: bool,
     /// The processor it is bound to.
     pub cpu: Option<usize>,
-    /// One notice about what it did not grant, and what would.
+    /// One notice: what the system refused, and what would make it possible.
     pub refused: Option<String>,
 }
 
 impl Granted {
-    /// Asks for real-time priority, punctual sleeps and the processor `cpu` for the calling thread, and locked
+    /// Asks for real-time priority, punctual sleeps and the processor `cpu` for the calling thread, and for locked
     /// memory for the process.
     pub(super) fn ask(cpu: Option<usize>) -> Granted {
         let priority = os::set_realtime_priority(PRIORITY);
         let memory = os::lock_memory();
-        // Without real-time priority the kernel may wake a thread 50 µs later than asked, to wake several together.
+        // Without real-time priority the kernel may wake a thread up to 50 µs late, to wake several together.
         os::set_punctual_sleep();
         let bound = cpu.map_or(Ok(()), |cpu| os::set_affinity(&[cpu]));
         let mut notices = Vec::new();

@@ -1,4 +1,4 @@
-//! Estimates that come back: set against the truth, kept.
+//! Estimates that come back: compared with the truth, and kept.
 
 use super::off::Off;
 use super::{Shared, Speed};
@@ -13,28 +13,28 @@ use std::sync::atomic::Ordering;
 /// How the estimates of a run are judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Judging {
-    /// What is taken out of them first.
+    /// The alignment to remove first.
     pub align: Align,
-    /// Scene time from which on they count.
+    /// Scene time from which estimates count.
     pub settle: SimTime,
 }
 
-/// What is made of the estimates of all links.
+/// Places and judges the estimates of all links.
 pub(super) struct Heard {
     plan: Arc<Plan>,
     shared: Arc<Shared>,
     speed: Speed,
     /// Whether stream time waits for the other side.
     lockstep: bool,
-    /// How far the newest of all is off.
+    /// Error of the newest estimate of all.
     pub newest: Option<Off>,
 }
 
-/// What the estimates amount to.
+/// The verdict on the estimates.
 #[derive(Debug, Default)]
 pub(super) struct Judgement {
     pub figures: Option<Figures>,
-    /// Each estimate, as it was said, with the scene time at which it held as far as that is known.
+    /// Each estimate as received, with the scene time at which it held, as far as known.
     pub estimates: Vec<(SimTime, Attitude)>,
 }
 
@@ -43,17 +43,17 @@ impl Heard {
         Heard { plan, shared, speed, lockstep, newest: None }
     }
 
-    /// Whether it can be told when an estimate held. As fast as the other side reads, an arrival says nothing: some
-    /// seconds of the stream may be on their way.
+    /// Whether the time at which an estimate held can be known. At full speed an arrival time says nothing: seconds
+    /// of the stream may still be in the buffers.
     pub(super) fn is_timed(&self, estimate: &Estimate) -> bool {
         self.speed != Speed::Max || self.lockstep || matches!(estimate.stamp, Stamp::Sample(_))
     }
 
-    /// Places an estimate that arrived at `now` (ns on the run's clock) in scene time; one of the rest before the scene
-    /// counts for nothing.
+    /// Places an estimate that arrived at `now` (ns on the run's clock) in scene time. `None` for an estimate from
+    /// the rest before the scene.
     pub(super) fn take_in(&mut self, Estimate { stamp, attitude }: Estimate, now: i64) -> Option<Timed> {
         let arrived = self.stream_time(now);
-        // Until its delay is known an estimate is taken to hold when it arrives.
+        // Until its delay is known, an estimate counts as held when it arrives.
         let t = self.shared.scene_time(if let Stamp::Sample(t) = stamp { t } else { arrived })?;
         let arrival = self.shared.scene_time(arrived)?;
         let stamp = match stamp {
@@ -65,12 +65,12 @@ impl Heard {
         Some(Timed { arrival, stamp, attitude })
     }
 
-    /// Judges the estimates of one link, of a scene that was played up to `played`.
+    /// Judges the estimates of one link, of a scene that played up to `played`.
     pub(super) fn judge(&self, said: &[Timed], judging: Judging, played: SimTime) -> Judgement {
         let truth = |t: SimTime| Some(self.plan.trajectory.at(t.max(SimTime::ZERO)).attitude);
         let Judging { align, settle } = judging;
         let options = score::Options { align, settle, until: played, ..score::Options::default() };
-        // Where nothing moves that tells one clock from the other, an estimate holds when it arrives.
+        // Without motion nothing relates the two clocks, so an estimate counts as held when it arrives.
         let arrived =
             || said.iter().map(|it| Timed { stamp: score::HeldAt::Arrival, ..*it }).collect::<Vec<_>>();
         let judged = score::judge(&truth, said, &options);
@@ -81,7 +81,7 @@ impl Heard {
         };
         let estimates = held.into_iter().zip(said).map(|(t, it)| (t, it.attitude)).collect();
         if let Some(figures) = &mut figures {
-            // What was told in scene time is told in real time, which nobody keeps where nothing is paced.
+            // The delay is in scene time; the report gives real time, which an unpaced run does not have.
             figures.delay_ms = match self.speed {
                 Speed::Times(times) => figures.delay_ms.map(|ms| ms / times),
                 Speed::Max => None,

@@ -1,4 +1,4 @@
-//! While the vehicle is held still: whether the scene may begin, and for how long that is waited for.
+//! The rest before the scene: whether the scene may begin, and how long the run waits for that.
 
 use super::{SessionError, Shared, step};
 use crate::time::SimTime;
@@ -6,27 +6,27 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// What the control side knows of the rest.
+/// State of the rest, on the control side.
 pub(super) struct Hold {
     rest: SimTime,
-    /// Since when nothing but the other side is waited for.
+    /// Since when the run waits only for the other side.
     since: Option<Instant>,
     began: bool,
-    /// Answers in lockstep that did not come.
+    /// Lockstep answers that did not come.
     untaken: u64,
 }
 
 impl Hold {
-    /// Of a scene that begins after such a rest, or at once.
+    /// State for a scene that begins after this rest, or at once.
     pub(super) fn new(rest: Option<SimTime>) -> Hold {
         Hold { rest: rest.unwrap_or_default(), since: None, began: rest.is_none(), untaken: 0 }
     }
 
-    /// Looks on: `unready` is a link whose other side is not ready, with what came on it. True when the scene has
-    /// begun since the last look.
+    /// Checks the rest: `unready` is a link whose other side is not ready, with what arrived on it. True when the
+    /// scene has begun since the last look.
     ///
     /// # Errors
-    /// A rest that is over for `wait`, and somebody is not ready.
+    /// The rest has been over for `wait` and some side is not ready.
     pub(super) fn look(
         &mut self,
         shared: &Shared,
@@ -54,7 +54,7 @@ impl Hold {
         Ok(false)
     }
 
-    /// What the user should know of answers in lockstep that did not come.
+    /// A notice about lockstep answers that did not come.
     pub(super) fn untaken(&mut self, shared: &Shared) -> Option<String> {
         let untaken = shared.untaken.get();
         let patience = SimTime(step::PATIENCE);

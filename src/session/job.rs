@@ -1,4 +1,4 @@
-//! What to run.
+//! The description of a run.
 
 use super::heard::Judging;
 use super::host::host;
@@ -13,41 +13,41 @@ use crate::wire::Protocol;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What to run.
+/// Everything a run needs.
 #[derive(Debug)]
 pub struct Job {
     /// The scene.
     pub plan: Arc<Plan>,
-    /// Where to: at least one.
+    /// Where to send: at least one.
     pub outputs: Vec<Output>,
-    /// Scene time at which it ends.
+    /// Scene time at which the run ends.
     pub end: SimTime,
-    /// How long the vehicle is held still before the scene at the least, and then until every other side is ready;
-    /// `None` begins with the scene.
+    /// The shortest time to hold the vehicle still before the scene; the hold then lasts until every other side is
+    /// ready. `None` begins with the scene.
     pub rest: Option<SimTime>,
-    /// A ground station, and which of the outputs has the controller that it is to talk to.
+    /// A ground station, and the index of the output whose controller it talks to.
     pub ground: Option<(Address, usize)>,
     /// How fast scene time goes.
     pub speed: Speed,
-    /// How long to wait for somebody on the other side; zero starts at once.
+    /// How long to wait for the other side; zero starts at once.
     pub wait: Duration,
     /// A program to start when the links are ready, with its arguments.
     pub command: Vec<String>,
-    /// Whether standard output is ours alone: the command's then goes to standard error.
+    /// Whether standard output is reserved for us: the command's output then goes to standard error.
     pub keep_stdout: bool,
-    /// How what the other side estimates is judged.
+    /// How to judge the estimates of the other side.
     pub judging: Judging,
-    /// The processor that the pacing thread is to keep to.
+    /// The processor to bind the pacing thread to.
     pub cpu: Option<usize>,
     /// A comparison with a bare timer, on the pacing thread.
     pub watch: Option<Watch>,
-    /// Who takes in what comes back on the first link, in place of the score: a loopback plug returns the packets.
+    /// Receives what comes back on the first link, in place of the score: a loopback plug returns the packets.
     pub tap: Option<Tap>,
 }
 
 impl Job {
-    /// All of a scene in real time, to these outputs, with the rest that the most demanding target needs; nobody is
-    /// waited for.
+    /// Plays the whole scene in real time to these outputs, with the rest that the most demanding target needs and
+    /// without waiting for anybody.
     pub fn new(plan: Arc<Plan>, outputs: Vec<Output>) -> Job {
         Job {
             end: plan.duration,
@@ -66,17 +66,17 @@ impl Job {
         }
     }
 
-    /// Its first target, whose controller chooses what it takes of the scene.
+    /// The first target, whose controller chooses what it reads of the scene.
     pub fn target(&self) -> Option<&'static Target> {
         self.outputs.iter().find_map(|output| output.to.target)
     }
 
-    /// Its first output with a controller that a ground station can talk to.
+    /// The first output with a controller that a ground station can talk to.
     pub fn mavlink(&self) -> Option<usize> {
         self.outputs.iter().position(|output| output.to.protocol == Protocol::Mavlink)
     }
 
-    /// A report with every field that the run can have: limits are checked against it before anything is opened.
+    /// A report with every field that the run can have: limits are checked against it before anything opens.
     pub fn shape(&self) -> Report {
         let sensors = self.plan.sensors.iter();
         let link = |output: &Output| {
@@ -94,10 +94,10 @@ impl Job {
     }
 }
 
-/// Called with bytes as they arrive.
+/// Receives bytes as they arrive.
 pub type OnBytes = dyn FnMut(&[u8]);
 
-/// Takes in what a link receives.
+/// Receives what a link reads.
 pub struct Tap(pub Box<OnBytes>);
 
 impl std::fmt::Debug for Tap {

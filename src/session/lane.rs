@@ -1,8 +1,7 @@
-//! All that the pacing thread has of one output.
+//! The pacing thread's half of an output.
 //!
-//! Every packet that comes out of the ring ends as sent, dropped or left, and is counted as it does. Nothing is sent
-//! out of order on a link, and nothing waits here that the output's policy did not ask for. It allocates nothing and
-//! takes no lock.
+//! Every packet from the ring ends as sent, dropped or left, and is counted once. A link sends nothing out of
+//! order, and packets wait here only as the output's policy says. The lane allocates nothing and takes no lock.
 
 use super::account::Account;
 use super::feed::Made;
@@ -23,30 +22,30 @@ use tokio::time::Instant;
 /// The pacing thread's half of an output.
 pub(super) struct Lane {
     pub sender: Sender,
-    /// What is to be written between the packets, where the other side is spoken with.
+    /// Replies to write between the packets, if there is a dialogue.
     pub replies: Option<Replies>,
-    /// In lockstep: how far the other side is.
+    /// In lockstep: how far the other side has read.
     pub step: Option<Step>,
     pub tally: Tally,
     pub left: Left,
-    /// Why its link takes nothing any more.
+    /// Why its link stopped taking packets.
     pub end: Option<ErrorKind>,
     policy: Overload,
     queue: Queue,
 }
 
-/// What came of a packet that was due.
+/// What happened to a packet that was due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(super) enum Delivery {
     /// It is sent, lost, or in the queue.
     Over,
-    /// It is to be delivered again soon, and scene time stands still until its link takes it.
+    /// To be delivered again soon; scene time stands still until the link takes it.
     Again,
 }
 
 impl Lane {
-    /// Of a link that is too slow, this is to become.
+    /// A lane whose link follows this policy when it is too slow.
     pub(super) fn new(sender: Sender, policy: Overload) -> Lane {
         Lane {
             sender,
@@ -60,7 +59,7 @@ impl Lane {
         }
     }
 
-    /// Whether its link may still take something.
+    /// Whether the link still takes packets.
     pub(super) fn is_open(&self) -> bool {
         self.end.is_none()
     }
@@ -70,12 +69,12 @@ impl Lane {
         !self.queue.is_empty()
     }
 
-    /// Whether the other side has not answered anything yet that it is to answer.
+    /// Whether the other side owes its first answer.
     pub(super) fn is_unanswered(&self) -> bool {
         self.step.as_ref().is_some_and(Step::is_unanswered)
     }
 
-    /// Whether a packet that carries these kinds may go, or has to wait for the other side.
+    /// Whether a packet with these kinds may go now, or waits for the other side.
     pub(super) fn turn(&mut self, carries: Kinds, clock: &impl Clock) -> Turn {
         match &mut self.step {
             Some(step) if self.end.is_none() => step.turn(carries, clock),
@@ -83,7 +82,7 @@ impl Lane {
         }
     }
 
-    /// Sends a packet that is due, or does with it what the policy says.
+    /// Sends a due packet, or applies the overload policy to it.
     pub(super) fn deliver<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) -> Delivery {
         match (pace.speed, self.policy) {
             _ if self.end.is_some() => self.lose(&it.packet, pace),
@@ -101,17 +100,17 @@ impl Lane {
         }
     }
 
-    /// Nothing is paced: the link has all the time it needs.
+    /// Unpaced: the link gets all the time it needs.
     fn deliver_all<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) {
         match self.attempt(&it, pace) {
             Sent::Done => {}
             Sent::Gone(_) => self.lose(&it.packet, pace),
-            // Stopped meanwhile.
+            // Everything stopped meanwhile.
             Sent::Full | Sent::Away => self.queue.push(it),
         }
     }
 
-    /// After those that wait; one more than there is room for costs the oldest.
+    /// Queues the packet behind those that wait; a full queue drops its oldest.
     fn deliver_in_turn<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) {
         self.catch_up(pace);
         if self.queue.is_empty() {
@@ -127,7 +126,7 @@ impl Lane {
         self.queue.push(it);
     }
 
-    /// Nothing is lost: what the link does not take is due when it does.
+    /// Loses nothing: a packet that the link does not take becomes due when it does.
     fn deliver_late<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) -> Delivery {
         match self.attempt(&it, pace) {
             Sent::Done => {}
@@ -138,7 +137,7 @@ impl Lane {
         Delivery::Over
     }
 
-    /// Sends what waits here, as far as the link takes it now.
+    /// Sends waiting packets as far as the link takes them now.
     pub(super) fn catch_up<C: Clock>(&mut self, pace: &mut Pace<C>) {
         if self.policy != Overload::DropOldest {
             return;
@@ -147,14 +146,14 @@ impl Lane {
             match self.attempt(&it, pace) {
                 Sent::Full => return,
                 Sent::Done => {}
-                // A port that comes back gets the present, not what was due before it left.
+                // A port that comes back gets current packets, not those due before it left.
                 Sent::Away | Sent::Gone(_) => self.lose(&it.packet, pace),
             }
             self.queue.pop();
         }
     }
 
-    /// Writes a packet, and counts it if the link took it.
+    /// Writes a packet and counts it if the link took it.
     fn attempt<C: Clock>(&mut self, it: &Due, pace: &mut Pace<C>) -> Sent {
         let taken = self.step.as_ref().map_or(0, Step::taken);
         let before = pace.clock.now();
@@ -175,7 +174,7 @@ impl Lane {
         sent
     }
 
-    /// Hands a packet to the link, and notes where it is gone.
+    /// Writes a packet to the link, and records when the port is gone.
     fn write<C: Clock>(&mut self, packet: &Packet, pace: &Pace<C>) -> Sent {
         let (bytes, stop) = (packet.bytes(), &pace.shared.stop);
         let sent = match (pace.speed, usize::from(packet.piece)) {
@@ -190,7 +189,7 @@ impl Lane {
         sent
     }
 
-    /// Sends so many bytes more of the packet before, which went out in part.
+    /// Sends up to this many more bytes of a packet that the link took in part.
     pub(super) fn send_kept(&mut self, bytes: u16) {
         self.sender.send_kept(bytes.into());
     }
@@ -203,19 +202,19 @@ impl Lane {
         pace.record_lost(packet);
     }
 
-    /// Samples that newer ones replaced before this packet are dropped, whatever becomes of it.
+    /// Counts samples that newer ones replaced before this packet as dropped, whatever happens to it.
     fn forget_replaced<C: Clock>(&mut self, packet: &Packet, pace: &Pace<C>) {
         let lost = self.tally.replaced(packet);
         pace.shared.dropped.add(lost);
     }
 
-    /// Writes the next reply; what came of it.
+    /// Writes the next reply, and says what happened.
     pub(super) fn reply<C: Clock>(&mut self, pace: &Pace<C>) -> Replied {
         let Some(packet) = self.replies.as_mut().and_then(Replies::next) else { return Replied::Nothing };
         if self.end.is_some() {
             return Replied::Nothing;
         }
-        // At full speed a link that is full all the time would never take it without a wait.
+        // At full speed a link that is always full would never take it without a wait.
         match self.write(&packet, pace) {
             Sent::Done => {
                 self.tally.replies += 1;
@@ -229,19 +228,19 @@ impl Lane {
         }
     }
 
-    /// Scene time stands still: the time to the next sample is no interval.
+    /// Scene time stands still: the time to the next sample does not count as an interval.
     pub(super) fn pause(&mut self) {
         self.tally.sensors.iter_mut().for_each(SensorTally::pause);
     }
 
-    /// What waits is not sent any more.
+    /// Gives up the packets that wait.
     pub(super) fn give_up(&mut self) {
         while let Some(it) = self.queue.pop() {
             self.left.add(&it.packet);
         }
     }
 
-    /// Sends what the other side is left with, each packet as long as it takes until the deadline.
+    /// Sends the farewell packets, each for as long as it takes, until the deadline.
     pub(super) async fn take_leave(&mut self, farewell: &[Packet], deadline: Instant) {
         for packet in farewell.iter().filter(|_| self.end.is_none()) {
             let sent = loop {
@@ -254,14 +253,14 @@ impl Lane {
         }
     }
 
-    /// Sends all that is kept of earlier packets.
+    /// Sends the rest of packets that went out in part.
     pub(super) fn finish(&mut self) {
         if let Err(error) = self.sender.finish() {
             self.end.get_or_insert(error.kind());
         }
     }
 
-    /// Lets go of the link at `now`; what came of the packets made for it.
+    /// Releases the link at `now` and gives the account of its packets.
     pub(super) fn account(mut self, made: Made, now: i64) -> Account {
         self.tally.gaps.end(now);
         Account { made, tally: self.tally, left: self.left, end: self.end }

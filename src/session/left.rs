@@ -1,18 +1,18 @@
-//! What was made for an output and neither sent nor dropped.
+//! Packets of an output that were neither sent nor dropped.
 
 use crate::sensor::ByKind;
 use crate::wire::Packet;
 
-/// Counts of it.
+/// Their counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Left {
-    /// Samples, of each kind.
+    /// Samples of each kind.
     pub samples: ByKind<u64>,
     pub packets: u64,
 }
 
 impl Left {
-    /// One packet more, with the samples that newer ones replaced before it.
+    /// Adds a packet, with the samples that newer ones replaced before it.
     pub(super) fn add(&mut self, packet: &Packet) {
         if packet.is_nothing() {
             return;

@@ -1,25 +1,25 @@
-//! How far an estimate that comes back is off the truth.
+//! The error of an estimate against the truth.
 
 use crate::geometry::Attitude;
 use crate::score::AttitudeError;
 use glam::DVec3;
 
-/// How far an estimate is off, degrees.
+/// The error of an estimate, degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Off {
     /// The whole rotation.
     pub total_deg: f64,
-    /// About the body's x axis, once the heading is right.
+    /// About the body's x axis, after the heading is corrected.
     pub roll_deg: f64,
-    /// About the body's y axis, once the heading is right.
+    /// About the body's y axis, after the heading is corrected.
     pub pitch_deg: f64,
-    /// About the vertical, positive where the estimate is turned too far clockwise.
+    /// About the vertical; positive where the estimate is too far clockwise.
     pub heading_deg: f64,
 }
 
 impl Off {
-    /// The error `e = q_estimate ⊗ q_truth*` (nav axes) is a turn about the vertical after a tilt; the tilt's rotation
-    /// vector, seen from the true body, has the errors of roll and pitch as components.
+    /// The error `e = q_estimate ⊗ q_truth*` (nav axes) is a tilt followed by a turn about the vertical. The tilt's
+    /// rotation vector in the true body frame has the roll and pitch errors as components.
     pub(super) fn between(truth: Attitude, estimate: Attitude) -> Off {
         let error = AttitudeError::between(truth, estimate);
         let heading = crate::geometry::exp(DVec3::Z * error.heading);
@@ -41,7 +41,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Errors that are put in one after another come out each in its own place, whatever the attitude.
+        /// Errors applied one after another come out separately, at any attitude.
         #[test]
         fn roll_pitch_and_heading_errors_are_told_apart(
             roll in -3.0..3.0f64, pitch in -1.5..1.5f64, yaw in -3.0..3.0f64,

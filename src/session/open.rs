@@ -1,4 +1,4 @@
-//! What the control side has of one output.
+//! The control side's half of an output.
 
 use super::account::Account;
 use super::outside::Outside;
@@ -11,16 +11,17 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout_at};
 
-/// Who comes within this is not told to be waited for: a command or a demonstration opens its link by itself.
+/// No waiting notice for a reader that comes within this time: a command or a demonstration opens its link by
+/// itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// The control side's half of an output: its link, and what is seen of it without keeping the pacing thread waiting.
+/// The control side's half of an output: its link, observed without delaying the pacing thread.
 pub(super) struct OpenOutput {
     pub output: Output,
     pub link: Link,
-    /// The fullest that the link's buffers were, bytes.
+    /// The highest fill of the link's buffers, bytes.
     fullest: Option<usize>,
-    /// It is a port that was pulled out.
+    /// The port was unplugged.
     unplugged: bool,
     /// Its reader has left for good.
     pub abandoned: bool,
@@ -38,14 +39,14 @@ impl OpenOutput {
         self.link.name()
     }
 
-    /// Tells what the user should know of the link, and that it is open.
+    /// Reports that the link is open, and what the user should know about it.
     pub(super) fn introduce(&self, outside: &mut Outside<'_>) {
         self.link.notices().iter().for_each(|notice| outside.notice(notice.clone()));
         outside.tell(Event::Ready(&self.output.to.at(self.name())));
     }
 
-    /// True when somebody is on the link; false when the user or the command ended the wait. `waited` is how long the
-    /// whole wait takes that ends at the deadline.
+    /// True when somebody is on the link; false when the user or the command ended the wait. `waited` is the length
+    /// of the whole wait, which ends at the deadline.
     pub(super) async fn wait_for_reader(
         &mut self,
         waited: Duration,
@@ -72,7 +73,7 @@ impl OpenOutput {
         }
     }
 
-    /// Who has to come to the link.
+    /// Whom the link waits for.
     fn whom(&self) -> String {
         let name = self.name();
         match self.output.to.address {
@@ -82,7 +83,7 @@ impl OpenOutput {
         }
     }
 
-    /// Looks at the link, and tells of a port that came or went.
+    /// Checks the link, and reports a port that left or came back.
     pub(super) fn look(&mut self, outside: &mut Outside<'_>) {
         self.fullest = self.fullest.max(self.link.queued());
         let (name, is_unplugged) = (self.link.name(), self.link.is_unplugged());
@@ -96,7 +97,7 @@ impl OpenOutput {
         self.unplugged = is_unplugged;
     }
 
-    /// What there is to say of the link, given what came of the output and what was said on it.
+    /// The link's report, from the output's account and its conversation.
     pub(super) fn report(&self, account: &Account, side: &Side) -> LinkReport {
         let Account { made, tally, left, .. } = account;
         let address = &self.output.to.address;
@@ -123,7 +124,7 @@ impl OpenOutput {
         }
     }
 
-    /// Why it takes nothing any more.
+    /// Why the link stopped taking packets.
     fn broken(&self, account: &Account) -> Option<String> {
         match account.end {
             _ if self.unplugged => Some("unplugged, and not back".into()),

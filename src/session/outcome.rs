@@ -1,4 +1,4 @@
-//! What comes of a run.
+//! The outcome of a run.
 
 use super::host::host;
 use super::pace::Speed;
@@ -10,26 +10,26 @@ use crate::score::Figures;
 use crate::time::SimTime;
 use std::io::ErrorKind;
 
-/// What came of it.
+/// The outcome of a run.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// Scene time reached: the end, or where it was stopped.
+    /// Scene time reached: the end, or where the run stopped.
     pub played: SimTime,
-    /// How fast it was to go.
+    /// The requested speed.
     pub speed: Speed,
-    /// Whether it was stopped by the user.
+    /// Whether the user stopped it.
     pub interrupted: bool,
-    /// For how long the vehicle was held still before the scene, s.
+    /// How long the vehicle was held still before the scene, s.
     pub rest_s: f64,
-    /// For how long scene time stood still for a link that was full or a controller in lockstep, s.
+    /// How long scene time stood still for a full link or a controller in lockstep, s.
     pub stretched_s: f64,
     /// Whether the pacing thread had real-time priority.
     pub realtime: bool,
     /// Whether the process was locked in memory.
     pub memory_locked: bool,
-    /// How the pacing thread waited; `None` where nothing was paced.
+    /// How the pacing thread waited; `None` if nothing was paced.
     pub pacing: Option<PacingReport>,
-    /// The comparison, where one was asked for.
+    /// The comparison with a bare timer, if requested.
     pub watched: Option<Watched>,
     /// Each sensor's counts, rates and lateness.
     pub sensors: Vec<SensorReport>,
@@ -37,16 +37,16 @@ pub struct Outcome {
     pub links: Vec<LinkReport>,
     /// The faults of outputs that acted: `mpu@pty drop from 2 s to 3 s`.
     pub faults: Vec<String>,
-    /// What the other side estimated, judged.
+    /// The verdict on the other side's estimates.
     pub attitude: Option<Figures>,
-    /// Every estimate that came back, with the scene time at which it held as far as that is known.
+    /// Every estimate that came back, with the scene time at which it held, as far as known.
     pub estimates: Vec<(SimTime, Attitude)>,
-    /// The command's exit code; `None` without a command, or when it was ended by us.
+    /// The command's exit code; `None` without a command, or if we killed it.
     pub command: Option<i32>,
 }
 
 impl Outcome {
-    /// The report of a run of this plan, not judged yet; `estimator` is what estimated on the other side.
+    /// The report of a run of this plan, not judged yet; `estimator` names the estimator on the other side.
     pub fn report(&self, plan: &Plan, estimator: &str) -> Report {
         let Outcome { realtime, memory_locked, pacing, .. } = *self;
         let known = |figures| AttitudeReport { estimator: estimator.into(), figures };
@@ -64,11 +64,8 @@ impl Outcome {
         }
     }
 
-    /// Judges its report: losses, links that broke, a command that failed, a run that never was, broken limits. `fed` is
-    /// whether a controller chose how many packets it gets.
-    ///
-    /// # Errors
-    /// The report cannot be written as JSON.
+    /// Judges its report: losses, broken links, a failed command, a run that never started, broken limits. `fed`
+    /// says whether a controller chose how many packets it gets.
     pub fn judge(&self, report: &mut Report, limits: &[Limit], fed: bool) -> serde_json::Result<()> {
         let mut failed = lost(report, fed);
         let broken = report.links.iter().filter(|link| !is_enough(link));
@@ -89,7 +86,7 @@ impl Outcome {
         Ok(())
     }
 
-    /// Why standard output did not take the packets that were for it, although somebody read them, as of a full disk.
+    /// Why standard output did not take its packets although somebody reads them, for example a full disk.
     pub fn unwritten(&self) -> Option<&str> {
         let refused = |link: &&LinkReport| is_stdout(link) && !is_enough(link);
         self.links.iter().filter(refused).find_map(|link| link.broken.as_deref())
@@ -106,8 +103,7 @@ fn lost(report: &Report, fed: bool) -> Vec<String> {
     lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect()
 }
 
-/// Whether a link ended with a reader of standard output that has enough, as `head` has: it loses nothing that anybody
-/// wants.
+/// Whether a link ended because the reader of standard output had enough, as `head` does: nobody misses anything.
 fn is_enough(link: &LinkReport) -> bool {
     let enough = ErrorKind::BrokenPipe.to_string();
     is_stdout(link) && link.broken.as_ref().is_some_and(|broken| *broken == enough)

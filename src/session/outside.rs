@@ -1,4 +1,5 @@
-//! What is outside a run: the user, who gets its events and can stop it, and the program under test, whose end stops it.
+//! Everything outside a run: the user, who gets its events and can stop it, and the program under test, whose end
+//! stops it.
 
 use super::command::Program;
 use super::{Event, SessionError};
@@ -11,7 +12,7 @@ pub(super) struct Outside<'a> {
     pub program: Program,
     /// The user ended the run.
     pub interrupted: bool,
-    /// The program's exit code, once it has ended by itself.
+    /// The program's exit code, if it ended by itself.
     pub ended: Option<i32>,
 }
 
@@ -24,17 +25,17 @@ impl Outside<'_> {
         Ok(Outside { on, signals, program: Program::default(), interrupted: false, ended: None })
     }
 
-    /// Tells the user.
+    /// Passes an event to the user.
     pub(super) fn tell(&mut self, event: Event<'_>) {
         (self.on)(event);
     }
 
-    /// Tells the user something to know.
+    /// Passes a notice to the user.
     pub(super) fn notice(&mut self, notice: String) {
         self.tell(Event::Notice(notice));
     }
 
-    /// Returns when the user ends the run and when the program has ended, once each.
+    /// Returns once when the user ends the run, and once when the program ends.
     pub(super) async fn ends(&mut self) {
         tokio::select! {
             () = self.signals.recv(), if !self.interrupted => self.interrupted = true,
@@ -43,12 +44,12 @@ impl Outside<'_> {
         }
     }
 
-    /// Whether one of them has ended it.
+    /// Whether either has ended the run.
     pub(super) fn has_ended(&self) -> bool {
         self.interrupted || self.ended.is_some()
     }
 
-    /// Waits for the program now that the run is over: its exit code, `None` if it had to be ended.
+    /// Waits for the program after the run is over: its exit code, or `None` if it had to be killed.
     pub(super) async fn finish(self) -> Option<i32> {
         match self.ended {
             Some(code) => Some(code),

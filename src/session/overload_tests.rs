@@ -1,4 +1,4 @@
-//! Links that are too slow, on a virtual clock: what each policy loses, keeps and delays, to the packet.
+//! Links that are too slow, on a virtual clock: what each policy loses, keeps and delays, packet by packet.
 
 use super::account::Account;
 use super::lane::Lane;
@@ -16,10 +16,10 @@ use std::sync::{Arc, Mutex};
 
 const MS: i64 = 1_000_000;
 const POLICIES: [Overload; 3] = [Overload::DropNewest, Overload::DropOldest, Overload::Stretch];
-/// A packet each millisecond for a second; as text, a packet names its time.
+/// A packet each millisecond for a second; as text, a packet contains its time.
 const SCENE: &str = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\nnoise_std = \"0.01 rad/s\"\n";
 
-/// The other side of one link, and what it has received.
+/// The other side of one link, and what it received.
 struct Reader {
     far: Far,
     received: Vec<u8>,
@@ -39,7 +39,7 @@ impl Reader {
 
 type Readers = Arc<Mutex<Vec<Reader>>>;
 
-/// A virtual clock on which the readers act each millisecond, before whoever waits goes on.
+/// A virtual clock on which the readers act each millisecond, before any wait ends.
 struct World<F> {
     now: i64,
     readers: Readers,
@@ -60,7 +60,7 @@ impl<F: FnMut(i64, &mut [Reader]) + Send> Clock for World<F> {
     }
 }
 
-/// A run that is over.
+/// A finished run.
 struct Ran {
     accounts: Vec<Account>,
     readers: Vec<Reader>,
@@ -68,7 +68,7 @@ struct Ran {
     stretched: i64,
 }
 
-/// Plays `scene` as text over memory links that hold `capacity` bytes, one a policy, while `act` happens.
+/// Plays `scene` as text over memory links of `capacity` bytes, one for each policy, while `act` runs.
 fn run(
     scene: &str,
     policies: &[Overload],
@@ -107,7 +107,7 @@ fn run_until(
     for (reader, lane) in readers.iter_mut().zip(&mut lanes) {
         reader.far.stall(false);
         reader.read();
-        // The rest of a packet that was taken in part.
+        // The rest of a packet that the link took in part.
         let _ = lane.sender.send(&[]);
         reader.read();
     }
@@ -116,8 +116,8 @@ fn run_until(
 }
 
 impl Ran {
-    /// What holds whatever happened: each packet and each sample is sent, dropped or queued; what was sent is what
-    /// arrived, each once, whole, in order; the lateness of each was recorded. Gives back the times that are missing.
+    /// Checks what always holds: each packet and each sample is sent, dropped or queued; what was sent arrived
+    /// once, whole and in order; the lateness of each was recorded. Returns the missing times.
     fn check(&self, link: usize) -> Vec<i64> {
         let Account { made, tally, left, .. } = &self.accounts[link];
         assert_eq!(made.packets, tally.packets + tally.dropped + left.packets, "packets");
@@ -136,7 +136,7 @@ impl Ran {
     }
 }
 
-/// Reads everything, but nothing from `from` to `to` ms.
+/// Reads everything, except from `from` to `to` ms, where it reads nothing.
 fn absent(from: i64, to: i64) -> impl FnMut(i64, &mut [Reader]) + Send {
     move |ms, readers| {
         if !(from..to).contains(&ms) {
@@ -149,7 +149,7 @@ fn absent(from: i64, to: i64) -> impl FnMut(i64, &mut [Reader]) + Send {
 fn a_reader_that_stops_and_resumes_costs_each_policy_its_own_packets() {
     let ran = POLICIES.map(|policy| run(SCENE, &[policy], 2000, absent(300, 600)));
     let lost = ran.each_ref().map(|ran| ran.check(0));
-    // All three lose the first that the link has no room for, some forty packets after the reader stopped.
+    // All three first lose the packet that the link has no room for, some forty packets after the reader stopped.
     let full = lost[0][0];
     assert!((310..400).contains(&full), "{full}");
     assert_eq!(lost[0], (full..600).collect::<Vec<_>>(), "drop-newest: whatever was due while it was full");
@@ -183,7 +183,7 @@ fn a_link_that_stalls_is_the_same_as_a_reader_that_stops() {
 
 #[test]
 fn a_scene_that_asks_too_much_gets_what_the_link_carries_and_the_rest_is_counted() {
-    // A packet has some eighty bytes and comes each millisecond; the link carries half of that.
+    // A packet has some eighty bytes and is due each millisecond; the link carries half of that.
     const CARRIED: usize = 1000;
     for policy in POLICIES {
         let ran = run(SCENE, &[policy], CARRIED, |ms, readers| {
@@ -203,7 +203,7 @@ fn a_scene_that_asks_too_much_gets_what_the_link_carries_and_the_rest_is_counted
             _ => {
                 assert!(lost.len() > 300, "{policy:?}: {}", lost.len());
                 assert_eq!(tally.dropped + ran.accounts[0].left.packets, lost.len() as u64);
-                // The link is never idle: it carries all it can until the end, one linkful more or less.
+                // The link is never idle: it carries all it can until the end, plus or minus one linkful.
                 let (linkfuls, periods) =
                     (tally.bytes as f64 / CARRIED as f64, ran.end as f64 / (32 * MS) as f64);
                 assert!(
@@ -212,7 +212,7 @@ fn a_scene_that_asks_too_much_gets_what_the_link_carries_and_the_rest_is_counted
                 );
             }
         }
-        // A queue is at most so many milliseconds old, and at the end leaves as fast as the link lets it.
+        // A queue spans at most `BACKLOG` ms, and at the end it leaves as fast as the link allows.
         let packet = tally.bytes as f64 / tally.packets as f64;
         let latest = match policy {
             Overload::DropOldest => BACKLOG as f64 * (1.0 + packet / CARRIED as f64 * 32.0) + 32.0,
@@ -228,11 +228,11 @@ fn a_reader_that_never_comes_back_leaves_what_waits_in_the_queue() {
     for policy in POLICIES {
         let ran = run_until(SCENE, &[policy], 2000, &Arc::<Shared>::default(), absent(300, 3000));
         ran.check(0);
-        // The last second of patience ends a second after the last packet.
+        // The last second of patience ends one second after the last packet.
         let queued = if policy == Overload::DropOldest { BACKLOG as u64 } else { 0 };
         assert_eq!(ran.accounts[0].left.packets, queued, "{policy:?}");
     }
-    // A scene that stands still ends when it is told to, and what was due and what was not are left.
+    // A scene that stands still ends on request; what was due and what was not are both left.
     let ran = run_until(SCENE, &[Overload::Stretch], 2000, &shared, |ms, readers| {
         if ms < 300 {
             readers[0].read();
@@ -253,7 +253,7 @@ fn a_port_that_is_unplugged_gets_the_present_when_it_is_back_and_the_gap_is_told
         });
         let (lost, gap) = (ran.check(0), &ran.accounts[0].tally.gaps);
         if policy == Overload::Stretch {
-            // The scene waits for it: the second time is 250 ms of scene earlier.
+            // The scene waits for the reader: the second gap starts 250 ms earlier in scene time.
             assert_eq!((lost.len(), gap.count, gap.dropped, ran.stretched), (0, 2, 0, 350 * MS));
         } else {
             assert_eq!(lost, (200..450).chain(700..800).collect::<Vec<_>>(), "{policy:?}");
@@ -274,7 +274,7 @@ fn a_clock_that_steps_makes_packets_late_and_each_is_told() {
         let (sender, far) = memory(capacity);
         let readers = Arc::new(Mutex::new(vec![Reader { far, received: Vec::new() }]));
         let world = World { now: 0, readers: readers.clone(), act: absent(0, 0) };
-        // Half a second on, the machine sleeps for 200 ms: nobody does anything meanwhile.
+        // After half a second the machine sleeps for 200 ms: nothing happens meanwhile.
         let clock = Stepping { world, at: 500 * MS, step };
         let pace = Pace::new(clock, Speed::Times(1.0), shared.clone());
         let mut pacer = Pacer { pace, ring: consumer, lanes: vec![Lane::new(sender, policy)] };
@@ -285,7 +285,7 @@ fn a_clock_that_steps_makes_packets_late_and_each_is_told() {
         assert_eq!(tally.sensors[0].lateness_count(), tally.packets);
         let latest = tally.sensors[0].latest_ns();
         assert!((latest - step).abs() < MS / 2, "{policy:?}: {latest} ns");
-        // What is late is sent at once. Two hundred packets at once are too many for the smaller link.
+        // Late packets go at once. Two hundred packets at once are too many for the smaller link.
         let all = capacity == 1 << 20 || policy == Overload::Stretch;
         assert_eq!(tally.dropped == 0, all, "{policy:?}: {}", tally.dropped);
     }
@@ -327,7 +327,7 @@ fn one_stalling_reader_neither_delays_nor_drops_the_packets_of_the_others() {
             assert!(ran.latest_ms(link) < 0.01);
         }
     }
-    // To stretch scene time is to stretch it for all; even so nothing is lost.
+    // Stretched scene time is stretched for every output; even so nothing is lost.
     let ran = run(SCENE, &[Overload::Stretch, Overload::DropNewest], 4000, |ms, readers| {
         readers[1].read();
         if ms > 800 {
@@ -362,7 +362,7 @@ fn no_policy_allocates_in_the_pacing_thread() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Readers that read, rest, stall, are unplugged and leave as they please: the accounts balance to the packet.
+    /// Readers read, rest, stall, unplug and leave at random: the accounts balance to the packet.
     #[test]
     fn whatever_the_other_sides_do_every_packet_is_accounted_for(
         whims in prop::collection::vec((0..3_usize, 0..6_u8, 1..60_i64), 5..60),

@@ -1,5 +1,5 @@
-//! The time of a run as the pacing thread keeps it: its clock, when stream time 0 was on it, for how long scene time
-//! stood still.
+//! The time of a run on the pacing thread: its clock, where stream time 0 is on it, and how long scene time stood
+//! still.
 
 use super::Shared;
 use super::effort::Effort;
@@ -16,7 +16,7 @@ use std::sync::atomic::Ordering;
 pub enum Speed {
     /// This many scene seconds a second.
     Times(f64),
-    /// As fast as the other side reads: nothing paced, nothing dropped.
+    /// As fast as the other side reads: nothing is paced, nothing is dropped.
     Max,
 }
 
@@ -28,7 +28,7 @@ impl Default for Speed {
 }
 
 impl Speed {
-    /// As in a report: a number, or `max`.
+    /// The entry for the report: a number, or `max`.
     pub(super) fn report(self) -> serde_json::Value {
         match self {
             Speed::Times(times) => times.into(),
@@ -42,17 +42,17 @@ impl Speed {
     }
 }
 
-/// Due without a wait: nothing is paced.
+/// Due without a wait, where nothing is paced.
 pub(super) const AT_ONCE: i64 = i64::MIN;
 
-/// Time, of one run.
+/// The time of one run.
 pub(super) struct Pace<C> {
     pub clock: C,
     pub speed: Speed,
     pub shared: Arc<Shared>,
-    /// The comparison that `timing` asks for.
+    /// The comparison with a bare timer that `timing` asks for.
     pub watching: Option<Watching>,
-    /// For how long scene time stood still, ns: `start` has moved by as much.
+    /// How long scene time stood still, ns: `start` has moved by that much.
     pub stretched: i64,
     /// Stream time 0 on the clock, ns.
     start: i64,
@@ -65,7 +65,7 @@ impl<C: Clock> Pace<C> {
         Pace { clock, speed, shared, watching: None, stretched: 0, start: 0, effort }
     }
 
-    /// Stream time 0 is at `start` on the clock, ns.
+    /// Sets stream time 0 to `start` on the clock, ns.
     pub(super) fn begin(&mut self, start: i64) {
         self.effort.resume(self.clock.now());
         self.starts_at(start);
@@ -81,7 +81,7 @@ impl<C: Clock> Pace<C> {
         self.shared.start_ns.store(start, Ordering::Relaxed);
     }
 
-    /// When what is due at the stream time `t` is due on the clock at this tempo, ns, or [`AT_ONCE`].
+    /// The due time on the clock of the stream time `t` at this tempo, ns, or [`AT_ONCE`].
     pub(super) fn due(&self, t: SimTime, tempo: Speed) -> i64 {
         match tempo {
             Speed::Times(1.0) => self.start + t.0,
@@ -90,7 +90,7 @@ impl<C: Clock> Pace<C> {
         }
     }
 
-    /// From the stream time `t` on everything is due `by` ns later.
+    /// Delays everything from the stream time `t` on by `by` ns.
     pub(super) fn shift(&mut self, by: i64, t: SimTime) {
         if by > 0 {
             self.stretched += by;
@@ -99,32 +99,32 @@ impl<C: Clock> Pace<C> {
         }
     }
 
-    /// Scene time stood still until now, where what is due at `t` was due on the clock at `due`.
+    /// Records that scene time stood still until now, where what is due at `t` was due on the clock at `due`.
     pub(super) fn stood_still(&mut self, due: i64, t: SimTime) {
         if due != AT_ONCE {
             self.shift(self.clock.now() - due, t);
         }
     }
 
-    /// From here on the stream goes as if what is due on the clock at `due` were due now.
+    /// Moves the stream so that what is due on the clock at `due` is due now.
     pub(super) fn due_now(&mut self, due: i64) {
         if due != AT_ONCE {
             self.starts_at(self.start + self.clock.now() - due);
         }
     }
 
-    /// Lets so many ns go by.
+    /// Waits this many ns.
     pub(super) fn wait(&mut self, ns: i64) {
         let until = self.clock.now() + ns;
         self.clock.wait_until(until);
     }
 
-    /// Whether the bare timer's turn comes before what is due at `t`.
+    /// Whether a slice of the bare timer comes before what is due at `t`.
     pub(super) fn is_bare_timers_turn(&self, t: SimTime) -> bool {
         self.watching.as_ref().is_some_and(|watching| watching.interrupts(t))
     }
 
-    /// A slice of the bare timer, in which scene time stands still.
+    /// Runs a slice of the bare timer; scene time stands still meanwhile.
     pub(super) fn compare(&mut self) {
         let Some(watching) = &mut self.watching else { return };
         self.effort.pause(self.clock.now());
@@ -140,7 +140,7 @@ impl<C: Clock> Pace<C> {
         }
     }
 
-    /// Records a packet that was lost.
+    /// Records a lost packet.
     pub(super) fn record_lost(&mut self, packet: &Packet) {
         if let Some(watching) = &mut self.watching {
             watching.packet(packet, self.start + packet.due.0, None);
@@ -149,7 +149,7 @@ impl<C: Clock> Pace<C> {
 }
 
 impl Pace<Precise<WallClock>> {
-    /// How the thread waited, on the processor that it was bound to; `None` where nothing was paced.
+    /// How the thread waited, on the processor it was bound to; `None` if nothing was paced.
     pub(super) fn report(&self, pinned_cpu: Option<usize>) -> Option<PacingReport> {
         let pacing_cpu = self.effort.share().filter(|_| self.speed.is_paced())?;
         let spin_us = self.clock.margin().ns() as f64 / 1000.0;

@@ -1,4 +1,4 @@
-//! The pacing thread: takes the next packet, waits until it is due, has its lane deliver it. Nothing else.
+//! The pacing thread: takes the next packet, waits until it is due and has its lane deliver it. Nothing else.
 
 use super::Item;
 use super::lane::{Delivery, Lane};
@@ -13,28 +13,28 @@ use rtrb::Consumer;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-/// A wait is cut into pieces this long, ns, to notice that everything stops.
+/// Waits are cut into pieces this long, ns, to notice a stop.
 const LOOK_UP: i64 = 50_000_000;
-/// The same where replies may come that are to be written soon.
+/// The length of a piece where replies may come that must go out soon, ns.
 const REPLY_SOON: i64 = 10_000_000;
-/// With so much time until the next packet, ns, there is enough for another reply.
+/// With at least this much time before the next packet, ns, another reply fits in.
 const SPARE: i64 = 2_000_000;
-/// Between two tries of a link that was full, or of a packet that waits for its turn, ns.
+/// Time between two attempts on a full link, or for a packet that waits for its turn, ns.
 const RETRY: i64 = 1_000_000;
-/// How long to wait for the producer when the ring is empty.
+/// Wait for the producer when the ring is empty.
 const EMPTY: Duration = Duration::from_micros(50);
-/// At the end, packets that wait are given up when none has moved for so long, ns.
+/// At the end, waiting packets are given up when none has moved for this long, ns.
 const PATIENCE: i64 = 1_000_000_000;
 
 /// What the pacing thread owns.
 pub(super) struct Pacer<C> {
     pub pace: Pace<C>,
     pub ring: Consumer<Item>,
-    /// One an output.
+    /// One for each output.
     pub lanes: Vec<Lane>,
 }
 
-/// What is to be known of a packet that is still in the ring.
+/// What the pacer needs to know of a packet that is still in the ring.
 #[derive(Clone, Copy, Debug)]
 struct Next {
     lane: usize,
@@ -43,7 +43,7 @@ struct Next {
 }
 
 impl<C: Clock> Pacer<C> {
-    /// Sends everything, stream time 0 being at `start` (ns on its clock), until the ring has ended or all stops.
+    /// Sends everything until the ring ends or the run stops. Stream time 0 is at `start` (ns on its clock).
     pub(super) fn run(&mut self, start: i64) {
         self.pace.begin(start);
         self.stream();
@@ -69,13 +69,14 @@ impl<C: Clock> Pacer<C> {
         }
     }
 
-    /// Writes the next reply to each link; the most that came of it.
+    /// Writes the next reply to each link; returns the strongest result.
     fn reply(&mut self) -> Replied {
         let replied = self.lanes.iter_mut().map(|lane| lane.reply(&self.pace));
         replied.max().unwrap_or(Replied::Nothing)
     }
 
-    /// Sends what waits, as far as the links take it now; how far ahead of a packet something else may happen, ns.
+    /// Sends waiting packets as far as the links take them now. Returns how long before a packet other work may
+    /// run, ns.
     fn look_up(&mut self) -> i64 {
         if self.lanes.iter().any(Lane::is_behind) {
             self.catch_up();
@@ -87,8 +88,8 @@ impl<C: Clock> Pacer<C> {
         }
     }
 
-    /// When the next packet is due on the clock, once nothing is to be done before it; if something is, some of that
-    /// is done.
+    /// When the next packet is due on the clock, once nothing comes before it; otherwise does part of that work and
+    /// returns `None`.
     fn comes_up(&mut self, next: Next, look_up: i64, replied: Replied) -> Option<i64> {
         if self.pace.is_bare_timers_turn(next.t) {
             self.pace.compare();
@@ -104,7 +105,7 @@ impl<C: Clock> Pacer<C> {
             return None;
         }
         if replied != Replied::Nothing && due > now + SPARE {
-            // Right behind a packet a link is full: later it may take the reply, too.
+            // A link is full right after a packet: it may take the reply later.
             if replied == Replied::Full {
                 self.pace.clock.sleep_until(now + RETRY);
             }
@@ -113,7 +114,7 @@ impl<C: Clock> Pacer<C> {
         Some(due)
     }
 
-    /// Whether the next packet need not wait for the other side; if it has to, some of that wait has passed.
+    /// Whether the next packet may go without waiting for the other side; if not, part of that wait passes here.
     fn may_go(&mut self, Next { lane, carries, t }: Next) -> bool {
         match self.lanes[lane].turn(carries, &self.pace.clock) {
             Turn::Goes => {}
@@ -123,7 +124,7 @@ impl<C: Clock> Pacer<C> {
                 return false;
             }
             Turn::WasLate => self.pace.stood_still(self.due(t), t),
-            // The tempo is another from here on.
+            // The tempo changes from here on.
             Turn::Even => self.pace.due_now(self.due(t)),
             Turn::Untaken => {
                 self.pace.shared.untaken.add(1);
@@ -135,13 +136,13 @@ impl<C: Clock> Pacer<C> {
 
     /// Waits until `due` and delivers the next packet.
     fn send_next(&mut self, due: i64, replied: Replied) {
-        // The packet leaves the ring before the wait, so that nothing stands between the wait and the write.
+        // The packet leaves the ring before the wait, so that nothing comes between the wait and the write.
         let Ok(Item { lane, packet }) = self.ring.pop() else { return };
         if due != AT_ONCE {
             self.pace.clock.wait_until(due);
         }
         if replied == Replied::Full {
-            // Whoever waits for an answer waits longer than one who misses a sample.
+            // A controller that waits for an answer waits longer than one that misses a sample.
             self.reply();
         }
         if packet.is_nothing() {
@@ -152,8 +153,8 @@ impl<C: Clock> Pacer<C> {
         self.pace.shared.stream_ns.store(packet.due.0, Ordering::Relaxed);
     }
 
-    /// Has its lane deliver a packet; for as long as that waits for its link, scene time stands still: all that follows
-    /// is due later.
+    /// Has its lane deliver a packet. While the packet waits for its link, scene time stands still: everything
+    /// after it becomes due later.
     fn deliver(&mut self, lane: usize, mut it: Due) {
         let due = it.due;
         if self.lanes[lane].deliver(it, &mut self.pace) == Delivery::Over {
@@ -174,7 +175,7 @@ impl<C: Clock> Pacer<C> {
         self.lanes.iter_mut().for_each(|lane| lane.catch_up(&mut self.pace));
     }
 
-    /// At the end: what waits may still go, as long as some of it moves.
+    /// At the end: waiting packets may still go, as long as some of them move.
     fn settle(&mut self) {
         let packets = |pacer: &Self| pacer.pace.shared.packets.get();
         let mut moved = self.pace.clock.now();
@@ -191,12 +192,12 @@ impl<C: Clock> Pacer<C> {
         }
     }
 
-    /// When what is due at the stream time `t` is due on the clock, ns, or [`AT_ONCE`].
+    /// The due time on the clock of the stream time `t`, ns, or [`AT_ONCE`].
     fn due(&self, t: SimTime) -> i64 {
         self.pace.due(t, self.tempo())
     }
 
-    /// How fast stream time goes now: a controller that has not answered yet is not sent packets faster than in real
+    /// The present speed of stream time: a controller that has not answered yet gets packets no faster than in real
     /// time.
     fn tempo(&self) -> Speed {
         match self.pace.speed {
@@ -206,7 +207,7 @@ impl<C: Clock> Pacer<C> {
         }
     }
 
-    /// Counts what is in the ring and the queues as left: made, but neither sent nor dropped.
+    /// Counts packets in the ring and the queues as left: made, but neither sent nor dropped.
     pub(super) fn give_up(&mut self) {
         self.lanes.iter_mut().for_each(Lane::give_up);
         while let Ok(item) = self.ring.pop() {

@@ -1,4 +1,4 @@
-//! The pacing thread, as the control side holds it.
+//! The control side's handle on the pacing thread.
 
 use super::SessionError;
 use super::granted::Granted;
@@ -7,13 +7,13 @@ use crate::clock::{Clock, Precise, WallClock};
 use std::thread::{self, JoinHandle, Thread};
 use tokio::sync::oneshot;
 
-/// From the start of the thread to stream time 0.
+/// Time from the start of the thread to stream time 0.
 const LEAD: i64 = 5_000_000;
 
-/// What it works with.
+/// The pacer of a live run.
 pub(super) type LivePacer = Pacer<Precise<WallClock>>;
 
-/// The thread.
+/// A running pacing thread.
 pub(super) struct Pacing {
     thread: JoinHandle<(LivePacer, Granted)>,
     refused: oneshot::Receiver<Option<String>>,
@@ -21,7 +21,7 @@ pub(super) struct Pacing {
 }
 
 impl Pacing {
-    /// Starts it, on this processor.
+    /// Starts the thread on this processor.
     pub(super) fn start(mut pacer: LivePacer, cpu: Option<usize>) -> Result<Pacing, SessionError> {
         let (tell, refused) = oneshot::channel();
         let (end, over) = oneshot::channel();
@@ -39,22 +39,22 @@ impl Pacing {
         Ok(Pacing { thread, refused, over })
     }
 
-    /// To wake it with.
+    /// The thread to wake.
     pub(super) fn thread(&self) -> Thread {
         self.thread.thread().clone()
     }
 
-    /// What the system did not allow it, once it has asked; to be called once.
+    /// What the system refused, once the thread has asked for it. Call it once.
     pub(super) async fn refused(&mut self) -> Option<String> {
         (&mut self.refused).await.ok().flatten()
     }
 
-    /// Returns when all is sent or it was told to stop; to be called until then.
+    /// Returns when everything is sent or the thread was told to stop. Do not call it again after that.
     pub(super) async fn over(&mut self) {
         let _ = (&mut self.over).await;
     }
 
-    /// Waits for its end.
+    /// Waits for the thread to end.
     pub(super) fn join(self) -> (LivePacer, Granted) {
         self.thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     }

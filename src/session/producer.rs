@@ -1,4 +1,4 @@
-//! What the producer thread does: it plays the plan, has packets made of it, and keeps the ring full.
+//! The producer thread: plays the plan, turns it into packets, and keeps the ring full.
 
 use super::feed::Feed;
 use super::{Item, Shared};
@@ -10,32 +10,33 @@ use rtrb::{Producer, PushError};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-/// How long to wait when the ring is full: far less than it holds.
+/// Wait when the ring is full: far shorter than its contents last.
 const FULL: Duration = Duration::from_micros(200);
-/// How far ahead of what is sent the rest is made, ns of stream time: so soon the scene can begin once it may.
+/// How far ahead of the last sent packet the rest is made, ns of stream time: the scene can start this soon after
+/// it may.
 const LEAD: i64 = 200_000_000;
-/// Between two looks at how far what is sent has come: far less than the lead.
+/// Time between two looks at the progress of sending: far less than the lead.
 const AHEAD: Duration = Duration::from_millis(1);
-/// The rest is made in blocks of so few ticks that little is computed in vain at its end.
+/// The rest is made in blocks of few ticks, so that little is computed in vain at its end.
 const REST_BLOCK: usize = 32;
 
-/// What is to be played.
+/// What to play.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Task<'a> {
     pub plan: &'a Plan,
     /// Scene time at which it ends.
     pub end: SimTime,
-    /// How long the vehicle is held still before the scene at the least; `None` begins with the scene.
+    /// The shortest time to hold the vehicle still before the scene; `None` begins with the scene.
     pub rest: Option<SimTime>,
 }
 
 /// Everything stopped before the end.
 struct Stopped;
 
-/// Plays the task into the ring; gives back the feeds, which know what was made and how to take leave.
+/// Plays the task into the ring. Returns the feeds, which know what was made and hold the farewell.
 pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, shared: &Shared) -> Vec<Feed> {
     let mut maker = Maker { feeds, items: Vec::new(), start: SimTime::ZERO, ring, shared };
-    // Stopping early is no failure: what was made is counted either way.
+    // An early stop is no failure: what was made is counted either way.
     let _ = maker.play(task);
     maker.end();
     shared.all_made.store(true, Ordering::Release);
@@ -43,11 +44,11 @@ pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, sh
 }
 
 struct Maker<'a> {
-    /// One an output.
+    /// One for each output.
     feeds: Vec<Feed>,
-    /// What was made last.
+    /// The items made last.
     items: Vec<Item>,
-    /// Stream time at which what is played began.
+    /// Stream time at which the present part began.
     start: SimTime,
     ring: Producer<Item>,
     shared: &'a Shared,
@@ -63,10 +64,10 @@ impl Maker<'_> {
         Player::new(plan, end, BLOCK).play(|moment| self.make(moment))
     }
 
-    /// The vehicle at rest for at least so long and until everybody is ready; gives back the stream time at which the
-    /// scene begins.
+    /// Holds the vehicle at rest for at least `rest` and until every side is ready. Returns the stream time at
+    /// which the scene begins.
     fn hold_still(&mut self, plan: &Plan, rest: SimTime) -> Result<SimTime, Stopped> {
-        /// The rest is over: the scene begins then.
+        /// The rest is over: the scene begins at this stream time.
         enum Over {
             At(SimTime),
             Stopped,
@@ -89,7 +90,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Waits until what is sent has come near to `t`, or nothing is left to send.
+    /// Waits until sending comes close to `t`, or nothing is left to send.
     fn wait_for_lead(&self, t: SimTime) -> Result<(), Stopped> {
         let far = || t.0 - self.shared.stream_ns.load(Ordering::Relaxed) > LEAD;
         while far() && self.ring.slots() < self.ring.buffer().capacity() {
@@ -115,7 +116,7 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// What faults still hold goes out.
+    /// Releases what faults still hold.
     fn end(&mut self) {
         for (lane, feed) in self.feeds.iter_mut().enumerate() {
             self.items.extend(feed.end().iter().map(|&packet| Item { lane, packet }));
@@ -125,15 +126,15 @@ impl Maker<'_> {
 
     fn hand_over(&mut self) {
         if self.feeds.len() > 1 || self.feeds.iter().any(Feed::is_faulty) {
-            // A packet due between two ticks of one output must not wait behind a later one of another.
+            // A packet due between two ticks of one output must not wait behind a later one of another output.
             self.items.sort_by_key(|item| item.packet.due);
         }
         self.items.drain(..).for_each(|item| push(&mut self.ring, item, self.shared));
     }
 }
 
-/// Waits for room; once everything stops, a packet more than fits is put in the place of waiting for ever: the
-/// ring is then emptied by whoever counts what was left.
+/// Waits for room in the ring. After a stop, whoever counts what is left empties the ring; once nobody holds the
+/// ring any more, the packet is dropped.
 fn push(ring: &mut Producer<Item>, mut item: Item, shared: &Shared) {
     while let Err(PushError::Full(back)) = ring.push(item) {
         item = back;

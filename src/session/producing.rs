@@ -1,4 +1,4 @@
-//! The producer thread, as the control side holds it.
+//! The control side's handle on the producer thread.
 
 use super::feed::Feed;
 use super::pacer::Pacer;
@@ -12,17 +12,17 @@ use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// Between two looks at whether it has ended.
+/// Time between two looks at whether it has ended.
 const LOOK: Duration = Duration::from_micros(100);
 
-/// The thread, or the ring that it is to fill once it is started.
+/// The thread, or the ring that it will fill once it starts.
 pub(super) enum Producing {
     NotYet(Producer<Item>),
     Started(JoinHandle<Vec<Feed>>),
 }
 
 impl Producing {
-    /// Starts it with what is known of the other side of each output, if it is not started yet.
+    /// Starts the thread with what is known of the other side of each output, unless it has started.
     pub(super) fn start(
         self,
         job: &Job,
@@ -38,19 +38,19 @@ impl Producing {
         }))
     }
 
-    /// Ends with it before anything was sent, once everything is told to stop and nobody takes from the ring.
+    /// Ends the thread before anything is sent, after a stop and with nobody reading the ring.
     pub(super) fn abandon(self) {
         if let Producing::Started(thread) = self {
             let _ = thread.join();
         }
     }
 
-    /// Stops it and joins it, emptying the ring into the count of what was left while it ends.
+    /// Stops and joins the thread; meanwhile empties the ring into the count of what was left.
     pub(super) fn collect<C: Clock>(self, pacer: &mut Pacer<C>) -> Vec<Feed> {
         let Producing::Started(thread) = self else { return Vec::new() };
         pacer.pace.shared.stop.store(true, Ordering::Relaxed);
         loop {
-            // Asked before emptying: what the producer pushed last is then in the ring.
+            // Ask before emptying: then the ring holds what the producer pushed last.
             let over = thread.is_finished();
             pacer.give_up();
             if over {

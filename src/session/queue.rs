@@ -5,8 +5,8 @@ use crate::scene::Overload;
 use crate::wire::Packet;
 use std::collections::VecDeque;
 
-/// Packets that `drop-oldest` keeps for a link: 64 ms of a sensor at 1 kHz. What the system's own buffers hold comes
-/// on top, and is older.
+/// Packets that `drop-oldest` keeps for a link: 64 ms of a sensor at 1 kHz. The system's own buffers hold more, and
+/// older, packets.
 pub(super) const BACKLOG: usize = 64;
 
 /// A packet that is due, with its due time on the pacing thread's clock (or [`AT_ONCE`]).
@@ -17,21 +17,21 @@ pub(super) struct Due {
 }
 
 impl Due {
-    /// By how much a write at `now` is late, ns.
+    /// How late a write at `now` is, ns.
     pub(super) fn late(&self, now: i64) -> i64 {
         if self.due == AT_ONCE { 0 } else { now - self.due }
     }
 }
 
-/// Those of one link, oldest first.
+/// The waiting packets of one link, oldest first.
 #[derive(Debug)]
 pub(super) struct Queue {
-    /// As large as it gets from the start.
+    /// Allocated at its full size from the start.
     waiting: VecDeque<Due>,
 }
 
 impl Queue {
-    /// With room for as many as this policy keeps.
+    /// A queue with the room that this policy needs.
     pub(super) fn new(policy: Overload) -> Queue {
         let room = if policy == Overload::DropOldest { BACKLOG } else { 1 };
         Queue { waiting: VecDeque::with_capacity(room) }
@@ -41,22 +41,22 @@ impl Queue {
         self.waiting.is_empty()
     }
 
-    /// The one that has waited longest.
+    /// The packet that has waited longest.
     pub(super) fn oldest(&self) -> Option<Due> {
         self.waiting.front().copied()
     }
 
-    /// Takes the one that has waited longest.
+    /// Takes the packet that has waited longest.
     pub(super) fn pop(&mut self) -> Option<Due> {
         self.waiting.pop_front()
     }
 
-    /// Takes the one that has waited longest, if there is no room for another.
+    /// Takes the packet that has waited longest, if there is no room for another.
     pub(super) fn make_room(&mut self) -> Option<Due> {
         if self.waiting.len() == BACKLOG { self.waiting.pop_front() } else { None }
     }
 
-    /// Lets one wait.
+    /// Adds a packet.
     pub(super) fn push(&mut self, it: Due) {
         self.waiting.push_back(it);
     }

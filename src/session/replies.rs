@@ -1,7 +1,7 @@
-//! What the other sides are answered: whole packets beside the stream, never in the middle of one.
+//! Replies to the other sides: whole packets between those of the stream, never inside one.
 //!
-//! Before the stream begins the control side writes them itself. From then on the links belong to the pacing thread,
-//! and they reach it over a ring a link, so that it neither waits nor locks.
+//! Before the stream starts the control side writes them itself. After that the links belong to the pacing thread,
+//! and replies reach it over one ring for each link, so that it neither waits nor locks.
 
 use crate::link::{Sender, Sent};
 use crate::sensor::Kinds;
@@ -9,19 +9,19 @@ use crate::time::SimTime;
 use crate::wire::{MAX_PACKET, Packet};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// Replies on their way to a link: more than any controller asks for at once.
+/// Replies on their way to a link: more than any controller requests at once.
 const ROOM: usize = 64;
 
-/// The way to one link.
+/// How replies reach one link.
 pub(super) enum Way {
-    /// The link itself, and how many replies it took.
+    /// The link itself, and the number of replies that it took.
     Link(Sender, u64),
-    /// To the pacing thread; how many the link had taken before.
+    /// A ring to the pacing thread, and the number of replies that the link took before.
     Ring(Producer<Packet>, u64),
 }
 
 impl Way {
-    /// Answers with a packet; false where it was lost because the link or the ring is full, or it is too long.
+    /// Sends a reply. False if it was lost because the link or the ring is full, or it is too long.
     pub(super) fn reply(&mut self, bytes: &[u8]) -> bool {
         if bytes.len() > MAX_PACKET {
             return false;
@@ -36,10 +36,10 @@ impl Way {
         }
     }
 
-    /// Gives the link away; what is said from now on comes out of the other end.
+    /// Gives the link away; later replies come out of the returned end.
     ///
     /// # Panics
-    /// When it was given away before.
+    /// When the link was given away before.
     pub(super) fn hand_over(&mut self) -> (Sender, Replies) {
         let (producer, ring) = RingBuffer::new(ROOM);
         match std::mem::replace(self, Way::Ring(producer, 0)) {
@@ -53,7 +53,7 @@ impl Way {
         }
     }
 
-    /// How many the link took before it was given away.
+    /// The number of replies that the link took before it was given away.
     pub(super) fn written(&self) -> u64 {
         match self {
             Way::Link(_, count) | Way::Ring(_, count) => *count,
@@ -61,31 +61,31 @@ impl Way {
     }
 }
 
-/// What came of a look at the replies.
+/// The result of a look at the replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Replied {
-    /// There was none.
+    /// There was no reply.
     Nothing,
-    /// One was written; there may be others.
+    /// One was written; more may follow.
     Some,
     /// One waits for its link.
     Full,
 }
 
-/// The pacing thread's end of a way.
+/// The pacing thread's end of the ring.
 pub(super) struct Replies {
     ring: Consumer<Packet>,
-    /// The one that its link did not take yet.
+    /// The reply that its link has not taken yet.
     unsent: Option<Packet>,
 }
 
 impl Replies {
-    /// Takes the next one.
+    /// Takes the next reply.
     pub(super) fn next(&mut self) -> Option<Packet> {
         self.unsent.take().or_else(|| self.ring.pop().ok())
     }
 
-    /// Puts one back that its link did not take: it is the next again.
+    /// Puts back a reply that its link did not take: it is next again.
     pub(super) fn keep(&mut self, packet: Packet) {
         self.unsent = Some(packet);
     }

@@ -15,7 +15,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 use std::thread;
 
-/// Half an hour of it.
+/// The scene of half an hour.
 const SCENE: &str = "seed = 7\nduration = \"1800 s\"\n[[motion]]\nkind = \"rock\"\namplitude = \"40 deg/s\"\nfrequency = \"0.3 Hz\"\naxis = \"pitch\"\nduration = \"1800 s\"\n[gyro]\nrate = \"50 Hz\"\nnoise_std = \"0.01 rad/s\"\n[accel]\nrate = \"50 Hz\"\nnoise_std = \"0.02 m/s^2\"\n[mag]\nrate = \"25 Hz\"\nnoise_std = \"0.2 uT\"\n";
 
 /// A virtual clock whose sleeps end up to a millisecond late, and on which the other side reads what has arrived.
@@ -64,7 +64,7 @@ fn half_an_hour(plan: &Plan, protocol: Protocol) {
     let shared = Arc::<Shared>::default();
     let outputs = [Output::to(format!("{name}@pty").parse().unwrap())];
     let (ring, consumer) = rtrb::RingBuffer::new(8192);
-    // As a pty holds: what the other side does not read in time would be lost.
+    // The capacity of a pty: bytes that the other side does not read in time would be lost.
     let (sender, far) = memory(20_000);
     let (made, mut pacer) = thread::scope(|scope| {
         let task = Task { plan, end: plan.duration, rest: None };
@@ -86,7 +86,7 @@ fn half_an_hour(plan: &Plan, protocol: Protocol) {
         tally.sensors[0].latest_ns()
     );
     assert!(*bytes == encoded(plan, protocol), "{name}: the very bytes, each packet once and in order");
-    // And so says a decoder that knows nothing of the scene.
+    // A decoder that knows nothing of the scene agrees.
     let mut samples = Samples::new(protocol);
     let (mut counts, mut last, mut backwards) = ([0; SensorKind::COUNT], [SimTime(-1); SensorKind::COUNT], 0);
     let mut each = |sample: wire::samples::Sample| {
@@ -103,7 +103,7 @@ fn half_an_hour(plan: &Plan, protocol: Protocol) {
     assert_eq!((heard.lost, heard.damaged, heard.duplicates, heard.out_of_order), (0, 0, 0, 0), "{name}");
     assert_eq!((heard.packets, backwards), (tally.packets, 0), "{name}");
     assert_eq!(counts[..2], [90_000, 90_000], "{name}");
-    // Where a packet always carries a field, it is read a second time.
+    // A field that every packet carries is read a second time.
     assert!([45_000, 90_000].contains(&counts[2]), "{name}: {}", counts[2]);
 }
 

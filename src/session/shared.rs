@@ -1,4 +1,4 @@
-//! What the threads of a run tell each other.
+//! State that the threads of a run share.
 
 use crate::time::SimTime;
 use crate::wire::Packet;
@@ -6,7 +6,7 @@ use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Between two looks at what is due by itself in a conversation.
+/// Time between two looks at what a conversation has due.
 pub(super) const TICK: Duration = Duration::from_millis(10);
 
 /// A packet on its way to one of the outputs.
@@ -17,7 +17,7 @@ pub(super) struct Item {
     pub packet: Packet,
 }
 
-/// On cache lines of its own: a thread that reads it with every packet does not wait for what another writes beside it.
+/// A value on cache lines of its own: a thread that reads it with every packet does not wait for writes beside it.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 pub(super) struct Apart<T>(T);
@@ -30,26 +30,26 @@ impl<T> Deref for Apart<T> {
     }
 }
 
-/// A count that the pacing thread alone adds to and others read. No two threads add, so it takes no locked instruction.
+/// A count that only the pacing thread adds to and others read. With one writer it needs no locked instruction.
 #[derive(Debug, Default)]
 pub(super) struct Count(AtomicU64);
 
 impl Count {
-    /// Adds to it, on the pacing thread.
+    /// Adds to the count; only for the pacing thread.
     pub(super) fn add(&self, more: u64) {
         self.0.store(self.get() + more, Ordering::Relaxed);
     }
 
-    /// What it is now.
+    /// The present count.
     pub(super) fn get(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// What the threads of a run tell each other.
+/// State that the threads of a run share.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// Ends everything soon.
+    /// Everything is to end soon.
     pub stop: Apart<AtomicBool>,
     /// The producer has pushed its last packet.
     pub all_made: AtomicBool,
@@ -59,18 +59,19 @@ pub(super) struct Shared {
     pub ready: AtomicBool,
     /// Stream time at which the scene starts, ns; the greatest number before that is known.
     pub scene_starts_ns: AtomicI64,
-    /// Wall time of stream time 0 on the run's clock, ns; −1 before the start. It moves when scene time is stretched.
+    /// Wall time of stream time 0 on the run's clock, ns; −1 before the start. It moves when scene time is
+    /// stretched.
     pub start_ns: AtomicI64,
-    /// Stream time at which it was stretched last, ns: what was due earlier was due by an earlier start.
+    /// Stream time of the last stretch, ns: packets due before it were due by an earlier start.
     pub stretched_at_ns: AtomicI64,
     pub packets: Count,
     pub dropped: Count,
-    /// Packets whose answer was not waited for any longer.
+    /// Packets for whose answer the wait was given up.
     pub untaken: Count,
 }
 
 impl Shared {
-    /// Before the start of a run with such a rest.
+    /// The state before the start of a run with this rest.
     pub(super) fn before(rest: Option<SimTime>) -> Shared {
         let scene_starts_ns = AtomicI64::new(if rest.is_some() { i64::MAX } else { 0 });
         Shared { start_ns: AtomicI64::new(-1), scene_starts_ns, ..Shared::default() }
@@ -82,12 +83,12 @@ impl Shared {
         (stream >= starts).then(|| stream - starts)
     }
 
-    /// Stream time at which the packet was due that was sent last.
+    /// Stream time at which the packet sent last was due.
     pub(super) fn sent(&self) -> SimTime {
         SimTime(self.stream_ns.load(Ordering::Relaxed))
     }
 
-    /// For how long the vehicle was held still, so far.
+    /// How long the vehicle has been held still so far.
     pub(super) fn rest(&self) -> SimTime {
         SimTime(self.scene_starts_ns.load(Ordering::Relaxed)).min(self.sent())
     }

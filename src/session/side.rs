@@ -1,4 +1,4 @@
-//! The conversation with one other side: who they are, what came from them, how they are answered.
+//! The conversation with one other side: who it is, what it sent, and how it gets replies.
 
 use super::lane::Lane;
 use super::replies::Way;
@@ -10,22 +10,22 @@ use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// One of them.
+/// One other side.
 pub(super) struct Side {
     pub dialogue: Option<Box<dyn Dialogue>>,
-    /// Its estimates, in the order in which they arrived.
+    /// Its estimates, in order of arrival.
     pub estimates: Vec<Timed>,
-    /// Bytes that came, and messages among them.
+    /// Bytes received, and the messages in them.
     pub bytes: u64,
     pub messages: u64,
     protocol: &'static str,
     way: Way,
-    /// In lockstep: packets that it has taken.
+    /// In lockstep: the number of packets it has read.
     took: Arc<AtomicU64>,
 }
 
 impl Side {
-    /// Of an output, with the way out to its link.
+    /// The other side of an output; `sender` is the way to its link.
     pub(super) fn new(output: &Output, sender: Sender) -> Side {
         Side {
             dialogue: output.to.protocol.dialogue(output.wire.controller),
@@ -38,22 +38,22 @@ impl Side {
         }
     }
 
-    /// Answers. Whoever asked and is not answered asks again.
+    /// Sends a reply. A lost reply does no harm: the other side repeats its request.
     pub(super) fn reply(&mut self, bytes: &[u8]) {
         let _ = self.way.reply(bytes);
     }
 
-    /// It has taken another packet.
+    /// Counts another packet as read.
     pub(super) fn took(&mut self) {
         self.took.fetch_add(1, Ordering::Release);
     }
 
-    /// Counts the packets that it has taken.
+    /// The counter of packets that it has read.
     pub(super) fn counter(&self) -> Arc<AtomicU64> {
         self.took.clone()
     }
 
-    /// Gives the link away to the pacing thread; `bridged` where somebody else may want to send beside the stream.
+    /// Gives the link to the pacing thread; `bridged` where a ground station may also send beside the stream.
     pub(super) fn lane(&mut self, output: &Output, bridged: bool) -> Lane {
         let (sender, replies) = self.way.hand_over();
         let mut lane = Lane::new(sender, output.overload);
@@ -62,7 +62,7 @@ impl Side {
         lane
     }
 
-    /// How far the conversation is.
+    /// The stage of the conversation.
     pub(super) fn stage(&self) -> Stage {
         self.dialogue.as_ref().map_or(Stage::Ready, |dialogue| dialogue.stage())
     }
@@ -72,17 +72,17 @@ impl Side {
         self.dialogue.as_ref().map_or(Peer::default(), |dialogue| dialogue.peer())
     }
 
-    /// Damaged packets that came.
+    /// Damaged packets received.
     pub(super) fn damaged(&self) -> u64 {
         self.dialogue.as_ref().map_or(0, |dialogue| dialogue.damaged())
     }
 
-    /// Replies that the link took before it was given away.
+    /// The number of replies that the link took before it was given away.
     pub(super) fn replies(&self) -> u64 {
         self.way.written()
     }
 
-    /// What came, for whoever waited in vain.
+    /// A summary of what arrived, for the message after a timeout.
     pub(super) fn what_came(&self) -> String {
         let Side { protocol, bytes, messages, .. } = self;
         match (bytes, messages) {

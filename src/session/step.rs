@@ -1,4 +1,4 @@
-//! Lockstep: the next packet of samples waits until the other side has taken the one before.
+//! Lockstep: the next packet of samples waits until the other side has read the one before.
 
 use crate::clock::Clock;
 use crate::scene::Output;
@@ -7,10 +7,10 @@ use crate::wire::{Controller, Packet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// After the first answer: for so long without another one, ns, the answers to packets that were sent before it are
-/// waited for, so that from then on each belongs to the packet before.
+/// Settling time after the first answer, ns: until no answer has come for this long, answers may belong to earlier
+/// packets. After that each belongs to the packet before it.
 const STRAGGLERS: i64 = 50_000_000;
-/// An answer that takes longer, ns, is not waited for.
+/// Timeout for an answer, ns.
 pub(super) const PATIENCE: i64 = 3_000_000_000;
 /// The kinds whose samples are answered.
 const ANSWERED: Kinds = Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]);
@@ -20,42 +20,42 @@ pub(super) fn in_lockstep(output: &Output) -> bool {
     output.wire.controller == Some(Controller::Px4Sitl)
 }
 
-/// One output in lockstep.
+/// Lockstep of one output.
 #[derive(Debug)]
 pub(super) struct Step {
-    /// Answers so far, counted by whoever hears them.
+    /// Answers so far; the receiving side counts them.
     took: Arc<AtomicU64>,
-    /// How many there were when the last packet was sent, or when it was last looked.
+    /// Their number when the last packet was sent, or at the last look.
     seen: u64,
     mode: Mode,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
-    /// Nothing was answered yet: a controller that boots leaves some tens to hundreds of packets unanswered.
-    /// They go out no faster than in real time.
+    /// Nothing was answered yet: a booting controller leaves tens to hundreds of packets unanswered. They go out no
+    /// faster than in real time.
     Unanswered,
-    /// The first answer came; until then others may follow that belong to packets sent before.
+    /// The first answer came; answers to earlier packets may still follow.
     Stragglers(i64),
-    /// Everything sent is answered.
+    /// Every packet is answered.
     Even,
-    /// The packet sent then is not; whether another had to wait for it.
+    /// The packet sent at this time is unanswered; the flag says whether another one had to wait for it.
     Owed(i64, bool),
 }
 
-/// What the other side's answers mean for the next packet.
+/// What the answers mean for the next packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(super) enum Turn {
-    /// It goes when it is due.
+    /// It goes when due.
     Goes,
     /// It waits for an answer.
     Waits,
-    /// It goes now that the answer is there: scene time stood still for it.
+    /// It goes because the answer has come: scene time stood still for it.
     WasLate,
     /// From now on each packet waits for the answer to the one before.
     Even,
-    /// No answer came: it goes without one.
+    /// No answer came within the timeout: it goes without one.
     Untaken,
 }
 
@@ -69,7 +69,7 @@ impl Step {
         self.took.load(Ordering::Acquire)
     }
 
-    /// A packet was sent at `now`, before which there were so many answers.
+    /// Records a packet sent at `now`, with the number of answers before it.
     pub(super) fn sent(&mut self, packet: &Packet, taken: u64, now: i64) {
         if self.mode == Mode::Even && is_answered(packet.carries) {
             self.seen = taken;
@@ -77,12 +77,12 @@ impl Step {
         }
     }
 
-    /// Whether nothing was answered yet, or nothing any more.
+    /// Whether nothing was answered yet, or answers have stopped.
     pub(super) fn is_unanswered(&self) -> bool {
         self.mode == Mode::Unanswered
     }
 
-    /// Whether a packet that carries these kinds may go now.
+    /// Whether a packet with these kinds may go now.
     pub(super) fn turn(&mut self, carries: Kinds, clock: &impl Clock) -> Turn {
         if !is_answered(carries) {
             return Turn::Goes;
@@ -98,7 +98,8 @@ impl Step {
 }
 
 impl Mode {
-    /// What follows at `now`, where answers came since the last look or did not, and what it means for the next packet.
+    /// The next mode at `now` and its meaning for the next packet; `came` says whether answers came since the last
+    /// look.
     fn next(self, came: bool, now: i64) -> (Mode, Turn) {
         match self {
             Mode::Unanswered if came => (Mode::Stragglers(now + STRAGGLERS), Turn::Waits),

@@ -1,6 +1,6 @@
-//! The conversations of a run: what the other sides say, what they are answered, how far each is.
+//! The conversations of a run: what the other sides send, the replies, and the stage of each.
 //!
-//! It reads no clock and waits for nothing: the control side hands it bytes and the time.
+//! It reads no clock and never waits: the control side passes in bytes and the time.
 
 use super::heard::{Heard, Judgement, Judging};
 use super::lane::Lane;
@@ -11,17 +11,17 @@ use crate::time::SimTime;
 use crate::wire::dialogue::{self, Dialogue, Said, Stage};
 use std::thread::Thread;
 
-/// Everything that is said on all links.
+/// The conversations on all links.
 pub(super) struct Talk {
-    /// One an output.
+    /// One for each output.
     pub sides: Vec<Side>,
     pub heard: Heard,
     notices: Vec<String>,
-    /// Whether the user knows that estimates are not judged.
+    /// Whether the user has heard that estimates are not judged.
     told_untimed: bool,
-    /// A ground station, and on which link the controller is that it talks to.
+    /// A ground station, and the link with the controller that it talks to.
     ground: Option<(Sender, usize)>,
-    /// Who waits for an answer in lockstep.
+    /// The thread that waits for an answer in lockstep.
     pub pacing: Option<Thread>,
 }
 
@@ -30,12 +30,12 @@ impl Talk {
         Talk { sides, heard, notices: Vec::new(), told_untimed: false, ground: None, pacing: None }
     }
 
-    /// Passes on to a ground station what the controller on a link says.
+    /// Forwards to a ground station what the controller on a link sends.
     pub(super) fn bridge(&mut self, sender: Sender, link: usize) {
         self.ground = Some((sender, link));
     }
 
-    /// Takes in what arrived on a link at `now`, ns on the run's clock.
+    /// Processes bytes that arrived on a link at `now`, ns on the run's clock.
     pub(super) fn hear(&mut self, link: usize, bytes: &[u8], now: i64) {
         self.sides[link].bytes += bytes.len() as u64;
         self.converse(link, |dialogue, talk| {
@@ -46,7 +46,7 @@ impl Talk {
         });
     }
 
-    /// What is due by itself.
+    /// Sends what is due without a request.
     pub(super) fn tick(&mut self, now: i64) {
         for link in 0..self.sides.len() {
             self.converse(link, |dialogue, talk| dialogue.tick(now, &mut |said| talk.said(link, said, now)));
@@ -81,26 +81,26 @@ impl Talk {
             Said::Notice(text) => self.notices.push(text),
             Said::Pass(frame) => {
                 if let Some((sender, _)) = self.ground.as_mut().filter(|(_, with)| *with == link) {
-                    // A ground station that is not there, or not fast enough, misses it.
+                    // A ground station that is absent or too slow misses it.
                     let _ = sender.send(frame);
                 }
             }
         }
     }
 
-    /// Passes on to the controller what the ground station says.
+    /// Forwards to the controller what the ground station sends.
     pub(super) fn pass_down(&mut self, datagram: &[u8]) {
         let Some(&(_, link)) = self.ground.as_ref() else { return };
         dialogue::frames(datagram).for_each(|frame| self.sides[link].reply(frame));
     }
 
-    /// Gives a link away to the pacing thread.
+    /// Gives a link to the pacing thread.
     pub(super) fn lane(&mut self, link: usize, output: &Output) -> Lane {
         let bridged = self.ground.as_ref().is_some_and(|(_, with)| *with == link);
         self.sides[link].lane(output, bridged)
     }
 
-    /// The first link on which nobody may be sent samples yet.
+    /// The first link whose other side does not accept samples yet.
     pub(super) fn silent(&self) -> Option<usize> {
         self.sides.iter().position(|side| side.stage() == Stage::Silent)
     }
@@ -110,17 +110,17 @@ impl Talk {
         self.sides.iter().position(|side| side.stage() < Stage::Ready)
     }
 
-    /// What the user should know and was not told yet.
+    /// Takes the notices that the user has not seen yet.
     pub(super) fn take_notices(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notices)
     }
 
-    /// Whether any estimate of the scene came.
+    /// Whether any estimate of the scene arrived.
     pub(super) fn has_estimates(&self) -> bool {
         self.sides.iter().any(|side| !side.estimates.is_empty())
     }
 
-    /// Judges the estimates of the side that said most, of a scene that was played up to `played`.
+    /// Judges the estimates of the side that sent most, for a scene that played up to `played`.
     pub(super) fn judge(&self, judging: Judging, played: SimTime) -> Judgement {
         let most = self.sides.iter().rev().map(|side| &side.estimates).max_by_key(|said| said.len());
         let most = most.filter(|said| !said.is_empty());
@@ -130,7 +130,7 @@ impl Talk {
 
 #[cfg(test)]
 impl Talk {
-    /// Holds this conversation on a link in place of its protocol's own.
+    /// Replaces the protocol's own dialogue on a link by this one.
     pub(super) fn script(&mut self, link: usize, dialogue: Box<dyn Dialogue>) {
         self.sides[link].dialogue = Some(dialogue);
     }

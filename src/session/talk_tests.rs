@@ -1,4 +1,4 @@
-//! Conversations on a virtual clock: what is said and when, holding still, lockstep.
+//! Conversations on a virtual clock: messages and their times, the rest, lockstep.
 
 use super::feed::Made;
 use super::heard::Heard;
@@ -27,8 +27,8 @@ use std::thread;
 const MS: i64 = 1_000_000;
 const S: i64 = 1000 * MS;
 
-/// A controller that says a letter at a time: `h` is its heartbeat, which is answered, `r` that it is ready, `t` that
-/// it took a packet, `e` an estimate, `p` something for a ground station; anything else is damage.
+/// A controller that speaks in letters: `h` is its heartbeat, which gets an answer, `r` says that it is ready, `t`
+/// that it read a packet, `e` is an estimate, `p` something for a ground station; anything else is damage.
 #[derive(Default)]
 struct Letters {
     stage: Option<Stage>,
@@ -71,7 +71,7 @@ fn output(to: &str) -> Output {
     Output::to(to.parse().unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// A conversation of letters about a scene, over a link of this capacity.
+/// A conversation in letters about a scene, over a link of this capacity.
 fn letters(plan: &Arc<Plan>, shared: &Arc<Shared>, speed: Speed, capacity: usize) -> (Talk, Far) {
     let (sender, far) = memory(capacity);
     let heard = Heard::new(plan.clone(), shared.clone(), speed, false);
@@ -99,7 +99,7 @@ impl<F: FnMut(i64) + Send> Clock for World<F> {
     }
 }
 
-/// What came of a run.
+/// A finished run.
 struct Ran {
     made: Made,
     text: String,
@@ -119,14 +119,15 @@ impl Ran {
         lines.map(row).collect()
     }
 
-    /// The answers among what arrived; each line is whole.
+    /// The replies among what arrived; each line is whole.
     fn replies(&self) -> Vec<&str> {
         let lines = self.text.lines().filter(|line| !line.starts_with(|c: char| c.is_ascii_digit()));
         lines.filter(|line| !line.starts_with("t_ns")).collect()
     }
 }
 
-/// Plays a scene as text after a rest, while `act` is told the time in ms and what has arrived, and answers.
+/// Plays a scene as text after a rest. `act` gets the time in ms and what has arrived, and returns the other side's
+/// bytes.
 fn live(
     scene: &str,
     rest: Option<SimTime>,
@@ -164,7 +165,7 @@ fn live(
         let mut pacer = Pacer { pace, ring: consumer, lanes: vec![lane] };
         pacer.run(0);
         let end = pacer.pace.clock.now;
-        // What is left of a packet that the link took in part.
+        // The rest of a packet that the link took in part.
         while pacer.lanes[0].sender.kept() > 0 {
             let (far, text) = &mut *there.lock().unwrap();
             text.extend(far.take());
@@ -205,7 +206,8 @@ fn the_vehicle_is_held_still_until_the_other_side_is_ready_and_then_the_scene_is
             }
         });
         let starts = shared.scene_starts_ns.load(Ordering::Relaxed);
-        // 400/3 Hz ticks on every third second. A scene may begin where it is ready, the lead later at the most.
+        // Ticks at 400/3 Hz fall on every third second. A scene may start when every side is ready, later by at
+        // most the lead.
         assert_eq!(starts % (3 * S), 0);
         assert!(starts >= rest.0 && starts <= (ready_ms * MS + 200 * MS).max(rest.0) + 3 * S, "{starts}");
         let rows = ran.rows();
@@ -230,13 +232,13 @@ fn the_vehicle_is_held_still_until_the_other_side_is_ready_and_then_the_scene_is
                 "the counts have the rest in them"
             );
         }
-        // Asked twice a second until it speaks, and then answered.
+        // A request goes out twice a second until it speaks; then it gets a reply.
         let (last, asked) = ran.replies().split_last().map(|(last, asked)| (*last, asked.len())).unwrap();
         assert_eq!((last, asked as i64), ("[hello]", ready_ms.max(1) / 500));
     }
 }
 
-/// The truth of one who does not move.
+/// The truth of a vehicle that does not move.
 fn still_of(truth: &crate::motion::Truth) -> crate::motion::Truth {
     crate::motion::Truth { rate: crate::geometry::Vector::ZERO, ..*truth }
 }
@@ -293,7 +295,7 @@ fn a_ground_station_hears_what_is_passed_on_and_its_frames_reach_the_controller_
 
 #[test]
 fn a_reply_is_written_between_packets_and_cuts_none() {
-    // A link that takes 37 bytes a millisecond, less than a line: most packets are taken in parts.
+    // A link that takes 37 bytes a millisecond, less than a line: most packets go out in parts.
     for speed in [Speed::Times(1.0), Speed::Times(3.0)] {
         let mut asked = 0;
         let (ran, _) = live(TURNING, None, speed, false, 37, |ms, _, talk| {
@@ -324,7 +326,7 @@ fn in_lockstep_each_packet_waits_for_the_answer_to_the_one_before() {
             let lines = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())).count();
             when.extend((seen..lines).map(|_| ms));
             seen = lines;
-            // The first thirty go unanswered; each later one is answered some time after it came.
+            // The first thirty stay unanswered; each later one is answered some time after it arrives.
             while answered < seen && (answered < 30 || when[answered] + THINKS <= ms) {
                 if answered >= 30 {
                     talk.hear(0, b"t", ms * MS);
@@ -339,7 +341,8 @@ fn in_lockstep_each_packet_waits_for_the_answer_to_the_one_before() {
         assert_eq!(ran.tally.dropped, 0);
         assert_eq!(most, 1, "{speed:?}: never two without an answer");
         assert_eq!(shared.untaken.get(), 0);
-        // Until the first answer no faster than in real time, then as asked or as the other side lets it.
+        // Until the first answer no faster than in real time; then at the requested speed or as fast as the other
+        // side allows.
         let free = 310.0;
         let a_packet = match speed {
             Speed::Times(times) => (10.0 / times).max(THINKS as f64 + 1.0),
@@ -359,7 +362,7 @@ fn a_controller_that_stops_answering_is_waited_for_some_seconds_and_then_again_o
         let (ran, shared) = live(scene, None, speed, true, 1 << 20, |ms, text, talk| {
             let seen = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())).count();
             if (100..300).contains(&seen) {
-                // Deaf for two hundred packets.
+                // Answers nothing for two hundred packets.
                 at_timeout = at_timeout.max(usize::from(seen > 101) * 101);
                 answered = seen;
                 return;
@@ -390,7 +393,7 @@ fn the_pacing_thread_allocates_nothing_while_it_replies_and_keeps_step() {
     let took = talk.sides[0].counter();
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
     tests::produce(&plan, &[output("csv@pty")], ring, &shared);
-    // Each packet is answered in the next millisecond.
+    // Each packet gets its answer in the next millisecond.
     let (answers, sent) = (took.clone(), shared.clone());
     let world = World { now: 0, act: move |_| answers.store(sent.packets.get(), Ordering::Relaxed) };
     lane.step = Some(Step::new(took));
@@ -405,7 +408,7 @@ fn the_pacing_thread_allocates_nothing_while_it_replies_and_keeps_step() {
 fn estimates_of_the_rest_count_for_nothing_and_those_of_the_scene_are_set_against_its_time() {
     let (ran, _) = live(TURNING, Some(SimTime(2 * S)), Speed::Times(1.0), false, 1 << 20, |ms, _, talk| {
         talk.hear(0, if ms == 1 { b"hr" } else { b"e" }, ms * MS);
-        // The seam is at 3 s, and the scene's first packet is due then.
+        // The rest ends at 3 s, where the scene's first packet is due.
         let expected = (ms > 3000).then_some(SimTime((ms - 3000) * MS));
         assert_eq!(
             talk.newest_arrival(),

@@ -1,20 +1,20 @@
-//! Counting without allocating: what was sent and dropped, how late, how evenly.
+//! Counts without allocating: packets sent and dropped, lateness, evenness.
 
 use super::gaps::Gaps;
 use crate::report::Times;
 use crate::sensor::ByKind;
 use crate::wire::Packet;
 
-/// One sensor on one link.
+/// The counts of one sensor on one link.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SensorTally {
     pub sent: u64,
     pub dropped: u64,
-    /// Those of them that a newer one replaced.
+    /// Dropped samples that a newer one replaced.
     pub replaced: u64,
-    /// When the last one was sent, unless a pause has come since.
+    /// When the last one was sent, unless a pause followed.
     last: Option<i64>,
-    /// From the first to the last of each stretch without a pause, summed, ns.
+    /// Time from first to last of each stretch without a pause, summed, ns.
     span: i64,
     pub late: Times,
     pub interval: Times,
@@ -33,12 +33,12 @@ impl SensorTally {
         self.write.record(write);
     }
 
-    /// The time to the next sample is no interval.
+    /// The time to the next sample does not count as an interval.
     pub(super) fn pause(&mut self) {
         self.last = None;
     }
 
-    /// Adds what another link has counted of the same sensor, but for its rate.
+    /// Adds another link's counts of the same sensor, except its rate.
     pub(super) fn add(&mut self, other: &SensorTally) {
         self.sent += other.sent;
         self.dropped += other.dropped;
@@ -67,17 +67,17 @@ impl SensorTally {
     }
 }
 
-/// One link.
+/// The counts of one link.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     pub packets: u64,
     pub bytes: u64,
     pub dropped: u64,
-    /// Packets beside the stream: answers, requests, a farewell.
+    /// Packets beside the stream: replies, requests, a farewell.
     pub replies: u64,
     pub sensors: ByKind<SensorTally>,
     pub gaps: Gaps,
-    /// When its first and its last packet were sent, ns, and the bytes of the last.
+    /// When its first and last packets were sent, ns, and the bytes of the last.
     first: i64,
     last: i64,
     last_bytes: u64,
@@ -98,7 +98,7 @@ impl Tally {
         }
     }
 
-    /// Counts a packet as dropped; how many samples that is.
+    /// Counts a packet as dropped; returns its number of samples.
     pub(super) fn dropped(&mut self, packet: &Packet) -> u64 {
         for kind in packet.carries.iter() {
             self.sensors[kind as usize].dropped += 1;
@@ -109,7 +109,7 @@ impl Tally {
         samples
     }
 
-    /// Counts the samples as dropped that newer ones replaced before this packet; how many.
+    /// Counts the samples that newer ones replaced before this packet as dropped; returns how many.
     pub(super) fn replaced(&mut self, packet: &Packet) -> u64 {
         let pairs = self.sensors.iter_mut().zip(packet.replaced);
         pairs

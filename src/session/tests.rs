@@ -26,13 +26,13 @@ fn output(text: &str) -> Output {
     Output::to(text.parse().unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// The producer's halves of these outputs.
+/// The producer's feeds of these outputs.
 pub(super) fn feeds(plan: &Plan, outputs: &[Output]) -> Vec<Feed> {
     let feed = |(i, output)| Feed::new(plan, i, output, Default::default());
     outputs.iter().enumerate().map(feed).collect()
 }
 
-/// Makes a whole scene's packets, with no rest before it.
+/// Makes a whole scene's packets, without a rest.
 pub(super) fn produce(
     plan: &Plan,
     outputs: &[Output],
@@ -44,7 +44,7 @@ pub(super) fn produce(
     feeds.into_iter().map(Feed::made).collect()
 }
 
-/// The ring of a whole scene, made ahead, and what was made.
+/// The ring of a whole scene, made ahead, and the counts of what was made.
 pub(super) fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) {
     let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
     let made = produce(plan, &[output(to)], ring, shared).remove(0);
@@ -77,7 +77,7 @@ pub(super) fn memory(capacity: usize) -> (Sender, Far) {
     (link.sender(), far)
 }
 
-/// The identity that nothing is missed silently, in samples of every kind.
+/// Checks that nothing is missed silently, in samples of every kind.
 pub(super) fn accounts_balance(made: &Made, pacer: &mut Pacer<impl Clock>) {
     pacer.give_up();
     let Lane { tally, left, .. } = &pacer.lanes[0];
@@ -175,7 +175,7 @@ fn samples_that_newer_ones_replace_are_counted_as_dropped() {
     let mut pacer = pacer(VirtualClock::default(), ring, sender, Speed::Max, &shared);
     pacer.run(0);
     let accel = &pacer.lanes[0].tally.sensors[1];
-    // Message k carries the newest of ten; the nine after the last message wait for one that never comes.
+    // Message k carries the newest of ten; the nine samples after the last message wait for one that never comes.
     assert_eq!((accel.sent, accel.dropped, made.waiting[1]), (100, 9 * 99, 9));
     accounts_balance(&made, &mut pacer);
 }

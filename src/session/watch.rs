@@ -1,5 +1,5 @@
-//! What `timing` adds to the pacing thread: slices of a bare timer between those of the stream, and a record of
-//! every sample and every wake-up.
+//! The additions of `timing` to the pacing thread: slices of a bare timer between those of the stream, and a record
+//! of every sample and every wake-up.
 
 use super::Shared;
 use crate::clock::{Clock, WallClock};
@@ -9,49 +9,49 @@ use crate::time::{Rate, SimTime};
 use crate::wire::Packet;
 use rtrb::Producer;
 
-/// From the end of the bare timer's slice to the next packet, ns.
+/// Time from the end of the bare timer's slice to the next packet, ns.
 const LEAD: i64 = 1_000_000;
 
-/// Asks the pacing thread for a comparison.
+/// A request for a comparison on the pacing thread.
 #[derive(Debug)]
 pub struct Watch {
-    /// The clock that records are in, shared with whoever receives.
+    /// The clock of the records, shared with the receiver.
     pub clock: WallClock,
-    /// How long a slice of the bare timer is, in which scene time stands still, and then one of the stream. Both begin
-    /// with half of one, so that no slice begins where packets are due that are sent once a second.
+    /// Length of a slice of the bare timer, during which scene time stands still, and of each stream slice after
+    /// it. Both start with half a slice, so that no slice begins where packets are due that are sent once a second.
     pub slice: SimTime,
     /// The bare timer's rate.
     pub rate: Rate,
-    /// Where records go; what does not fit is counted.
+    /// Where records go; those that do not fit are counted.
     pub records: Producer<Record>,
 }
 
-/// What happened, in ns of the run's clock.
+/// An event, in ns of the run's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Record {
-    /// A sample's packet was written, or not taken by the link.
+    /// A sample's packet was written, or the link did not take it.
     Sample {
-        /// Which sensor's.
+        /// The sensor.
         kind: SensorKind,
         /// When its packet is due in the scene.
         t: SimTime,
-        /// The same on the clock.
+        /// Its due time on the clock.
         due: i64,
-        /// Just before the write call; `None` where the link was full or gone.
+        /// Time just before the write call; `None` where the link was full or gone.
         sent: Option<i64>,
     },
     /// The bare timer woke.
     Wake {
         /// Its count over all slices.
         k: u64,
-        /// For when it was set.
+        /// The time it was set for.
         due: i64,
-        /// Just after.
+        /// The time just after it woke.
         woke: i64,
     },
 }
 
-/// A comparison under way.
+/// A comparison in progress.
 #[derive(Debug)]
 pub(super) struct Watching {
     asked: Watch,
@@ -60,7 +60,7 @@ pub(super) struct Watching {
     pub seen: Watched,
 }
 
-/// What came of it.
+/// The result of a comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Watched {
     /// Lateness of the bare timer's wake-ups.
@@ -74,13 +74,13 @@ impl Watching {
         Watching { asked, next: SimTime::ZERO, seen: Watched::default() }
     }
 
-    /// Whether the bare timer's turn comes before what is due at `t`.
+    /// Whether a slice of the bare timer comes before what is due at `t`.
     pub(super) fn interrupts(&self, t: SimTime) -> bool {
         t >= self.next
     }
 
-    /// The bare timer's slice; answers where scene time 0 is then, so that the stream goes on as if there had been
-    /// none.
+    /// Runs a slice of the bare timer. Returns the new clock time of scene time 0, so that the stream goes on as if
+    /// there had been no slice.
     pub(super) fn bare_timer(&mut self, clock: &mut impl Clock, shared: &Shared) -> i64 {
         let start = clock.now() + LEAD;
         let (rate, before) = (self.asked.rate, self.seen.late.count());

@@ -13,7 +13,7 @@ use std::sync::atomic::Ordering;
 
 const MILLI: i64 = 1_000_000;
 
-/// A second of the scene with the bare timer taking turns every 100 ms, and its records.
+/// A second of the scene, with a slice of the bare timer every 100 ms, and its records.
 fn watched(clock: VirtualClock) -> (Pacer<VirtualClock>, Vec<Record>, Vec<u8>) {
     let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
     let (ring, made) = made(&plan, "mpu@pty", &shared);
@@ -58,7 +58,7 @@ fn slices_of_the_bare_timer_change_no_byte_and_take_no_scene_time() {
         let [before, after] = [pair[0], pair[1]];
         let apart = after.1 - before.1;
         match after.0 % (100 * MILLI) {
-            // Where slices meet, 100 wake-ups of the bare timer lie between.
+            // Between two slices lie 100 wake-ups of the bare timer.
             t if t == 50 * MILLI => assert!((100 * MILLI..110 * MILLI).contains(&apart), "{apart}"),
             _ => assert_eq!(apart, after.0 - before.0),
         }
@@ -95,14 +95,14 @@ fn the_bare_timer_is_as_late_as_the_clock_and_a_wake_later_than_a_period_is_coun
         .collect();
     let expected: Vec<_> = (0..1050).map(|k| (k, 20_000)).collect();
     assert_eq!(wakes, expected);
-    // Every hundredth sleep is 2.5 ms late: that wake and the one after it are over a period late.
+    // One sleep in a hundred is 2.5 ms late: that wake-up and the next are more than a period late.
     let sleeps: Vec<_> = (0..100).map(|i| if i == 50 { 2_500_000 } else { 0 }).collect();
     let (pacer, ..) = watched(VirtualClock::waking_late(sleeps));
     let late = pacer.pace.watching.unwrap().seen.late;
     assert!(late.above(MILLI) >= 2 && late.above(2 * MILLI) >= 1 && late.above(3 * MILLI) == 0);
 }
 
-/// A suspended machine, a stopped virtual machine: time goes on without the pacing thread.
+/// A suspended machine or a stopped virtual machine: time goes on without the pacing thread.
 #[test]
 fn after_a_clock_that_steps_forward_late_packets_go_at_once_and_are_counted_late() {
     let steps: Vec<_> = (0..2000).map(|i| if i == 300 { 400 * MILLI } else { 0 }).collect();
@@ -120,7 +120,7 @@ fn after_a_clock_that_steps_forward_late_packets_go_at_once_and_are_counted_late
             let late = report.late_us.unwrap();
             assert!((late.max / 400e3 - 1.0).abs() < 1e-3, "{late:?}");
             assert_eq!(report.dropped, 0);
-            // 400 periods passed at once: the median is in time, and the run ends when its scene does.
+            // 400 periods passed at once: the median is on time, and the run ends when its scene does.
             assert_eq!(late.p50, 0.0);
             assert_eq!(pacer.pace.clock.now(), MILLI + 999 * MILLI);
         } else {

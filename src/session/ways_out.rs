@@ -1,4 +1,4 @@
-//! What would fit, where a link does not carry its output.
+//! Changes that would fit, where a link does not carry its output.
 
 use crate::link::{Address, STANDARD_BAUDS, bytes_per_second};
 use crate::report::number;
@@ -7,18 +7,18 @@ use crate::sensor::SensorPlan;
 use crate::time::Rate;
 use crate::wire::{self, Layout, Protocol};
 
-/// Looks for what would fit.
+/// Looks for changes that would fit.
 pub(super) struct WaysOut<'a, L> {
     pub plan: &'a Plan,
     pub output: &'a Output,
     pub capacity: f64,
     pub needed: f64,
-    /// Bytes and packets a second of these sensors so sent.
+    /// Bytes and packets a second of these sensors with a given layout.
     pub load: &'a L,
 }
 
 impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L> {
-    /// A sentence each, with its number.
+    /// All of them, one sentence each with its number.
     pub(super) fn all(&self) -> Vec<String> {
         let mut ways: Vec<_> = self.lower_rate().into_iter().collect();
         ways.extend(self.other_packets());
@@ -36,7 +36,7 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L>
         ways
     }
 
-    /// The highest whole rate in Hz to which the faster sensors can be slowed down.
+    /// The highest whole rate in Hz that fits when the faster sensors slow down to it.
     fn lower_rate(&self) -> Option<String> {
         let at = |hz: u32| {
             let mut sensors = self.plan.sensors.clone();
@@ -58,7 +58,7 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L>
         (fits > 0).then(|| format!("a lower rate: {} needs {} bytes/s", sets.join(" "), number(at(fits))))
     }
 
-    /// Each other layout and protocol that fits, or that none does.
+    /// Each other layout and protocol that fits, or a sentence that none does.
     fn other_packets(&self) -> Vec<String> {
         let here = self.output.to.protocol;
         let mut others = Vec::new();
@@ -74,7 +74,7 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L>
         for protocol in Protocol::ALL.into_iter().filter(|it| *it != here && carries_all(it)) {
             others.push((protocol.name().into(), self.bytes(protocol, wire::Options::default())));
         }
-        // What the output sends already is no other.
+        // What the output already sends is no alternative.
         others.retain(|(_, bytes)| *bytes != self.needed);
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         let say = |(what, bytes): &(String, f64)| format!("{what} needs {} bytes/s", number(*bytes));
