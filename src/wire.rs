@@ -1,8 +1,8 @@
 //! Readings to packets: the only room that knows both the sensors and the protocols.
 //!
-//! Each protocol is one file with an [`Encoder`]; what comes back is the business of `dialogue`. Conversion from the
-//! program's axes (Forward-Right-Down, SI, µT) to a protocol's own happens here and nowhere else.
-//! To add a protocol: its payloads in the `protocols` crate, its folder beside this file, one line in `protocol.rs`.
+//! Each protocol is one file with an [`Encoder`]; `dialogue` handles what comes back. Only this room converts from
+//! the program's axes (Forward-Right-Down, SI, µT) to those of a protocol. To add a protocol: its payloads in the
+//! `protocols` crate, its folder beside this file, one line in `protocol.rs`.
 //!
 //! ```
 //! use ratetable::player::{BLOCK, Player};
@@ -69,17 +69,18 @@ pub use ratetable_protocols::mavlink::Version;
 /// How `mpu` carries gyro and accel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// Each in packets of its own.
+    /// Each in separate packets.
     Separate,
-    /// Together in `imu` packets at the faster rate, the slower one held: what a burst read of the chip returns.
+    /// Together in `imu` packets at the faster rate, with the slower one held: what a burst read of the chip
+    /// returns.
     Burst,
 }
 
-/// A flight controller that wants a protocol spoken its own way.
+/// A flight controller that uses its own variant of a protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Controller {
-    /// PX4 on its board, in HITL: time is arrival.
+    /// PX4 on its board, in HITL: a sample's time is its arrival.
     Px4,
     /// PX4 as a program, in lockstep.
     Px4Sitl,
@@ -89,60 +90,60 @@ pub enum Controller {
     Inav,
 }
 
-/// How a protocol lays its packets out, and whom it talks to.
+/// How a protocol lays out its packets, and which controller it talks to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// For `mpu`; `None` is burst where the rates are equal, else separate.
     pub layout: Option<Layout>,
-    /// Whose ways the protocol keeps to.
+    /// The controller whose variant the protocol follows.
     pub controller: Option<Controller>,
     /// For `mavlink`: the version of its framing.
     pub version: Version,
-    /// For `mavlink`: what is sent beside HIL_SENSOR.
+    /// For `mavlink`: the messages to send beside HIL_SENSOR.
     pub extras: Extras,
 }
 
-/// What an encoder needs to know of the scene.
+/// What an encoder needs of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup<'a> {
     /// The sensors, in order.
     pub sensors: &'a [SensorPlan],
-    /// The axes the scene is written in, for text.
+    /// The axes of the scene, for text.
     pub axes: Axes,
     /// The scene's date.
     pub day: Option<Day>,
     /// How packets are laid out.
     pub options: Options,
-    /// What the conversation has brought to light of the other side.
+    /// What the conversation has found out about the other side.
     pub peer: Peer,
 }
 
-/// What an encoder is told of one moment of the scene.
+/// One moment of the scene, for an encoder.
 #[derive(Clone, Copy, Debug)]
 pub struct Now<'a> {
-    /// When.
+    /// The time.
     pub t: SimTime,
-    /// What is true then, for packets that carry truth.
+    /// The truth at that time, for packets that carry it.
     pub truth: &'a Truth,
-    /// The readings due then, in the order of sensors.
+    /// The readings due at that time, in the order of sensors.
     pub readings: &'a [Reading],
 }
 
 /// Turns readings into packets, in order of time.
 pub trait Encoder: Send {
-    /// Appends the packets of the readings due now, and whatever the protocol sends besides.
+    /// Appends the packets of the readings due now, and other messages of the protocol.
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>);
 
-    /// What the other side is left with, at the very end: appends the packets of a vehicle that has stopped at `t`.
+    /// Appends the last packets for the other side: those of a vehicle that has stopped at `t`.
     fn farewell(&mut self, _t: SimTime, _out: &mut Vec<Packet>) {}
 
-    /// Samples of each kind taken in that no packet has carried yet.
+    /// Samples of each kind that no packet has carried yet.
     fn waiting(&self) -> ByKind<u64> {
         ByKind::default()
     }
 }
 
-/// A vehicle that stands level, facing north, where nothing else is known of the scene.
+/// A level vehicle that faces north, where nothing else is known of the scene.
 fn at_rest(t: SimTime) -> Truth {
     Truth {
         t,
@@ -153,7 +154,7 @@ fn at_rest(t: SimTime) -> Truth {
     }
 }
 
-/// What gyro, accel and mag of a vehicle read that has stopped as it is.
+/// The readings of gyro, accel and mag of a vehicle that has stopped in its present attitude.
 fn stopped(truth: &Truth) -> [Vector<Body>; 3] {
     let up = Vector::new(0.0, 0.0, -STANDARD_GRAVITY);
     [Vector::ZERO, truth.attitude.inverse().apply(up), truth.field]

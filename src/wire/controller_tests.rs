@@ -14,7 +14,7 @@ use ratetable_protocols::{mip, vectornav as vn};
 
 /// Three error-free sensors at 100 Hz.
 const EXACT: &str = "[gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"100 Hz\"\n[mag]\nrate = \"100 Hz\"\n";
-/// In which a packet has one new sample of each, and nothing repeats.
+/// A scene in which each packet has one new sample of each sensor, and nothing repeats.
 pub(super) const TOGETHER: &str = r#"
 seed = 3
 [[motion]]
@@ -73,7 +73,7 @@ const LEVEL: &str = "00000000e803000000000000cd8b010000280000b8ba2e";
 /// At roll 30, pitch 10, yaw 90 degrees, turning at 1, 2, 3 deg/s.
 const TURNING: &str = "ae00ec0155031000e0ffd0ffcd8b0100f8f38700e9b071";
 
-/// What follows the header, version, flags and 30 bytes of zeros of a simulator message, which are checked.
+/// The fields after the header, version, flags and 30 bytes of zeros of a simulator message, which it checks.
 fn readings_of(packet: &Packet) -> String {
     let hex = hex(packet.bytes());
     let start = format!("24583c001f203600020f{}", "00".repeat(30));
@@ -85,7 +85,7 @@ fn msp_sends_the_golden_bytes_of_inav() {
     let turning = "[start]\nattitude = \"[30, 10, 90] deg\"\n[[motion]]\nkind = \"rotate\"\n\
                    angular_rate = \"[1, 2, 3] deg/s\"\nduration = \"1 s\"\n";
     for (motion, golden) in [("duration = \"1 s\"\n", LEVEL), (turning, TURNING)] {
-        // Whatever the declination and the strength, and in either axes.
+        // For any declination and strength, and in either axes.
         for (declination, strength) in [(0.0, 50.0), (11.46, 50.0), (-170.0, 31.0)] {
             let field = strength * 60f64.to_radians().cos();
             let (north, east) = (f64::to_radians(declination).cos(), f64::to_radians(declination).sin());
@@ -98,7 +98,7 @@ fn msp_sends_the_golden_bytes_of_inav() {
     }
 }
 
-/// Negative control: readings with a mistake in axes, sign, unit or declination make other bytes.
+/// Negative control: a mistake in the axes, sign, unit or declination of a reading changes the bytes.
 #[test]
 fn a_mistake_in_the_readings_is_not_golden() {
     let scene = format!(
@@ -153,7 +153,7 @@ fn msp_leaves_the_magnetometers_own_errors_on_its_own_axes() {
     }
 }
 
-/// Bytes of a golden packet whose pressure is that which a scene without a barometer has.
+/// Bytes of a golden packet with the pressure of a scene without a barometer.
 fn with_pressure(mut imu: vn_imu::Repr, pressure: f32) -> Vec<u8> {
     imu.pressure = pressure;
     let mut bytes = [0; vn::MAX_LEN];
@@ -239,7 +239,7 @@ fn ahrs_packets_carry_the_truth_fifty_times_a_second() {
     }
 }
 
-/// A ramp of the gyro's x that says in which millisecond a sample was taken.
+/// A ramp of the gyro's x whose value tells the millisecond of a sample.
 fn ramp(protocol: Protocol, gyro: Rate, peer: Peer) -> Vec<Packet> {
     let plan = plan(&format!("duration = \"9 s\"\n{}", EXACT.replacen("100 Hz", &format!("{gyro}"), 1)));
     let mut encoder = encoder(protocol, &Setup { peer, ..setup(&plan, None) });

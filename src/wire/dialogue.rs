@@ -1,7 +1,7 @@
-//! The conversation with whoever is at the other end: what they say, what is answered, when they may be played to.
+//! The conversation with the other end: its messages, our replies, and when it accepts samples.
 //!
-//! A [`Dialogue`] touches no link and reads no clock: bytes and times go in, what they mean comes out, so that a
-//! test holds a whole conversation in memory. The session writes the replies, keeps the estimates for the score and
+//! A [`Dialogue`] touches no link and reads no clock. Bytes and times go in and their meaning comes out, so a test
+//! holds a whole conversation in memory. The session writes the replies, keeps the estimates for the score, and
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
 mod frames;
@@ -11,18 +11,18 @@ pub use frames::frames;
 use crate::geometry::Attitude;
 use crate::time::{Rate, SimTime};
 
-/// What a message from the other side amounts to.
+/// The meaning of a message from the other side.
 #[derive(Debug)]
 pub enum Said<'a> {
     /// Its estimate of the attitude.
     Estimate(Estimate),
-    /// It is to be sent these bytes as soon as possible, ahead of the stream; at most [`super::MAX_PACKET`].
+    /// Send it these bytes as soon as possible, ahead of the stream; at most [`super::MAX_PACKET`].
     Reply(&'a [u8]),
-    /// It has taken a packet of samples in and waits for the next: lockstep.
+    /// It has read a packet of samples and waits for the next: lockstep.
     Took,
-    /// The user should know this; said once.
+    /// A notice for the user, given once.
     Notice(String),
-    /// A whole message of the other side that a ground station would want to see.
+    /// A whole message of the other side for a ground station.
     Pass(&'a [u8]),
 }
 
@@ -38,43 +38,44 @@ pub struct Estimate {
 /// What is known of the time at which an estimate held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stamp {
-    /// The stream time of the newest sample it rests on, as echoed: exact.
+    /// The stream time of its newest sample, as echoed: exact.
     Sample(SimTime),
-    /// Time of the other side's own clock, ns since whenever.
+    /// Time of the other side's own clock, ns since an unknown epoch.
     Own(i64),
-    /// Nothing but its arrival.
+    /// Only its arrival time.
     Arrival,
 }
 
-/// How far a conversation is.
+/// The stage of a conversation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// It is not to be sent samples yet: a handshake is under way, or it has not been heard.
+    /// It does not accept samples yet: a handshake is in progress, or it has not spoken.
     Silent,
-    /// It is fed the vehicle at rest, for its estimator to settle.
+    /// It receives the vehicle at rest while its estimator settles.
     Still,
     /// The scene may start.
     Ready,
 }
 
-/// What the encoder has to know of the other side, once the stage is past [`Stage::Silent`].
+/// What the encoder needs to know of the other side after [`Stage::Silent`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peer {
     /// The system id to share (MAVLink).
     pub system: Option<u8>,
-    /// The rate at which it asked for samples.
+    /// The sample rate that it requested.
     pub rate: Option<Rate>,
 }
 
-/// One end of a conversation; `now` is in ns on one clock, of which only differences matter.
+/// One end of a conversation. `now` is in ns on one clock; only differences matter.
 pub trait Dialogue: Send {
-    /// Takes in bytes as they arrive, however they are cut.
+    /// Processes bytes as they arrive, in pieces of any size.
     fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>));
 
-    /// Called every ten milliseconds or so, for what is due by itself: a request, a resend, a notice that nobody answers.
+    /// Sends what is due without a request: a question, a retransmission, a notice that nobody answers. Call it
+    /// about every ten milliseconds.
     fn tick(&mut self, _now: i64, _say: &mut dyn FnMut(Said<'_>)) {}
 
-    /// How far it is.
+    /// The present stage.
     fn stage(&self) -> Stage {
         Stage::Ready
     }
@@ -84,29 +85,29 @@ pub trait Dialogue: Send {
         Peer::default()
     }
 
-    /// Packets that came damaged, and runs of bytes that were none.
+    /// Damaged packets, and runs of bytes that are no packet.
     fn damaged(&self) -> u64 {
         0
     }
 }
 
-/// After so long without a byte, ns, what is held is judged as it is: noise that looks like the start of a long packet
-/// would hide what comes behind it.
+/// After this long without a byte, ns, held bytes are read as they are: noise that looks like the start of a long
+/// packet would otherwise hide the packets after it.
 pub(super) const PAUSE: i64 = 100_000_000;
 
-/// Watches for a [`PAUSE`] in what arrives.
+/// Detects a [`PAUSE`] in the received bytes.
 #[derive(Debug, Default)]
 pub(super) struct Pause {
     heard: Option<i64>,
 }
 
 impl Pause {
-    /// Bytes came.
+    /// Records that bytes arrived.
     pub fn heard(&mut self, now: i64) {
         self.heard = Some(now);
     }
 
-    /// Whether there is one since then; said once.
+    /// Whether a pause has begun since then; true once for each pause.
     pub fn is_now(&mut self, now: i64) -> bool {
         self.heard.take_if(|heard| now - *heard >= PAUSE).is_some()
     }

@@ -1,28 +1,28 @@
-//! Faults of an output: what becomes of packets on their way, for a while. They are at work in `faults`.
+//! Faults of an output: what happens to packets on their way, during a period. `faults` applies them.
 
 use crate::keys::{Key, KeyError, Takes, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::{NANOS, SimTime};
 use std::fmt;
 
-/// What goes wrong.
+/// The kinds of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PacketFaultKind {
-    /// Packets are missing at random, a `share` of them.
+    /// A random `share` of the packets is lost.
     Drop,
-    /// `bits` of a `share` of the packets are flipped.
+    /// `bits` bits flip in a `share` of the packets.
     Corrupt,
-    /// A `share` of the packets comes twice.
+    /// A `share` of the packets arrives twice.
     Duplicate,
-    /// A `share` of the packets is overtaken by the next one.
+    /// The next packet overtakes a `share` of the packets.
     Reorder,
-    /// Nothing goes out; then everything at once.
+    /// Nothing goes out; then everything goes at once.
     Stall,
     /// A `share` of the packets goes out in `pieces`, a `gap` apart.
     Split,
 }
 
-/// The longest stall: its packets are kept in memory.
+/// The longest stall: memory holds its packets.
 const LONGEST_STALL: SimTime = SimTime(10 * NANOS);
 
 impl PacketFaultKind {
@@ -36,7 +36,7 @@ impl PacketFaultKind {
         PacketFaultKind::Split,
     ];
 
-    /// As scenes write it.
+    /// Its name in scenes.
     pub const fn name(self) -> &'static str {
         ["drop", "corrupt", "duplicate", "reorder", "stall", "split"][self as usize]
     }
@@ -69,11 +69,11 @@ impl PacketFaultKind {
 /// A fault of an output.
 #[derive(Clone, Debug)]
 pub struct PacketFault {
-    /// What goes wrong.
+    /// Its kind.
     pub kind: PacketFaultKind,
-    /// From when on.
+    /// Its start.
     pub start: SimTime,
-    /// Until when.
+    /// Its end.
     pub end: SimTime,
     /// The values of its kind's keys.
     pub values: Values,
@@ -88,10 +88,10 @@ impl fmt::Display for PacketFault {
 }
 
 impl PacketFault {
-    /// Whether a value cannot be.
+    /// Checks the values.
     ///
     /// # Errors
-    /// The key and what would be right.
+    /// The key with a bad value, and what would be right.
     pub fn check(&self) -> Result<(), KeyError> {
         if self.values.scalar("share").is_some_and(|share| share > 1.0) {
             return Err(KeyError::new("share", "a share of the packets is at most 100 %"));

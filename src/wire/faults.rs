@@ -1,9 +1,9 @@
-//! The faults of one output at work on its packets, between the encoder and whoever sends them.
+//! Applies the faults of one output to its packets, between the encoder and the sender.
 //!
-//! They know scene time and packets alone, so the same scene gives the same bytes at any speed. What is sent later
-//! than it would be leaves [`Packet::nothing`] in its place, so that time goes on for the other side of a queue.
-//! Random ones draw once a packet, from the stream `output/I/fault/N/KIND`: I counts the run's outputs, N the faults
-//! of this one.
+//! Faults depend only on scene time and packets, so the same scene gives the same bytes at any speed. A packet that
+//! is sent later leaves [`Packet::nothing`] in its place, so that time goes on for the far end of a queue. Random
+//! faults draw once for each packet, from the stream `output/I/fault/N/KIND`: I counts the run's outputs, N the
+//! faults of this one.
 
 use super::fault::{PacketFault, PacketFaultKind};
 use super::{Packet, Protocol};
@@ -14,21 +14,21 @@ use rand::RngExt;
 use std::collections::VecDeque;
 use std::mem;
 
-/// What a fault has done.
+/// What a fault did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Acts {
     /// The fault.
     pub kind: PacketFaultKind,
-    /// The same with its times, as a person reads it.
+    /// The fault with its times, as text for a person.
     pub what: String,
-    /// The packets it acted on, up to the time settled.
+    /// The packets it acted on, up to the settled time.
     pub packets: u64,
-    /// When it acted on others: packets are made ahead of time.
+    /// The times when it acted on later packets: packets are made ahead of time.
     ahead: VecDeque<SimTime>,
 }
 
 impl Acts {
-    /// Counts what was done up to, not including, `t`.
+    /// Counts what it did before `t`.
     pub fn settle(&mut self, t: SimTime) {
         while self.ahead.front().is_some_and(|at| *at < t) {
             self.ahead.pop_front();
@@ -37,11 +37,11 @@ impl Acts {
     }
 }
 
-/// Every fault of an output.
+/// All faults of an output.
 #[derive(Debug)]
 pub struct Faults {
     chain: Vec<Faulty>,
-    /// Samples that were taken out with their packets, those that these had replaced too.
+    /// Samples removed with their packets, and those that these packets had replaced.
     taken: ByKind<u64>,
     /// Samples that go out a second time.
     added: ByKind<u64>,
@@ -50,8 +50,8 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// Those of the run's output `output`, in the order given but for splits, which are the last thing that happens to
-    /// a packet. `None` without any.
+    /// The faults of the run's output `output`, in the given order, except that splits come last. `None` without
+    /// any.
     pub fn new(faults: &[PacketFault], protocol: Protocol, seed: u64, output: usize) -> Option<Faults> {
         let faulty = |(n, fault): (usize, &PacketFault)| {
             let stream = format!("output/{output}/fault/{n}/{}", fault.kind.name());
@@ -63,20 +63,20 @@ impl Faults {
         (!chain.is_empty()).then(|| Faults { chain, taken, added, through: Vec::new(), now: SimTime::ZERO })
     }
 
-    /// The scene, in whose time faults are given, starts at `t`.
+    /// Marks the time `t` at which the scene starts; fault times are relative to it.
     pub fn scene_starts(&mut self, t: SimTime) {
         for faulty in &mut self.chain {
             (faulty.start, faulty.end) = (faulty.start + t, faulty.end + t);
         }
     }
 
-    /// Lets packets made at `t` pass: leaves what goes out of them, and of those before, by then.
+    /// Passes packets made at `t` through the faults: leaves those that go out by then, earlier ones included.
     pub fn pass(&mut self, t: SimTime, packets: &mut Vec<Packet>) {
         self.now = t;
         self.through(Some(t), packets);
     }
 
-    /// At the end: what is still held goes out, as `packets` do.
+    /// At the end: passes `packets` through and releases what is still held.
     pub fn end(&mut self, packets: &mut Vec<Packet>) {
         self.through(None, packets);
     }
@@ -96,17 +96,17 @@ impl Faults {
         }
     }
 
-    /// Of the samples that an encoder took in, those that its packets here carry or replace, once each time.
+    /// Of an encoder's samples, those that its packets here carry or replace, once for each time.
     pub fn account(&self, samples: ByKind<u64>) -> ByKind<u64> {
         std::array::from_fn(|i| samples[i] + self.added[i] - self.taken[i])
     }
 
-    /// Counts what was done up to, not including, `t`.
+    /// Counts what the faults did before `t`.
     pub fn settle(&mut self, t: SimTime) {
         self.chain.iter_mut().for_each(|faulty| faulty.acts.settle(t));
     }
 
-    /// What each has done.
+    /// What each fault did.
     pub fn into_acts(self) -> Vec<Acts> {
         self.chain.into_iter().map(|faulty| faulty.acts).collect()
     }
@@ -119,13 +119,13 @@ struct Faulty {
     end: SimTime,
     share: f64,
     bits: u64,
-    /// Whether only the inside of a packet is hurt.
+    /// Whether only the inside of a packet is damaged.
     spares_framing: bool,
     pieces: u64,
     gap: SimTime,
     protocol: Protocol,
     stream: Stream,
-    /// What goes out later, in that order.
+    /// Packets that go out later, in that order.
     held: VecDeque<Packet>,
     acts: Acts,
 }
@@ -148,7 +148,7 @@ impl Faulty {
         }
     }
 
-    /// What was held and goes out by `t` (`None`: at the end), it being `now`.
+    /// Releases what was held until `t` (`None`: at the end), at the time `now`.
     fn release(&mut self, t: Option<SimTime>, now: SimTime, out: &mut Vec<Packet>) {
         match self.acts.kind {
             PacketFaultKind::Stall if t.is_none_or(|t| t >= self.end) => {
@@ -175,7 +175,7 @@ impl Faulty {
     ) {
         let due = packet.due;
         if self.acts.kind == PacketFaultKind::Split {
-            // The next packet of a stream brings the rest of the one before along.
+            // The next packet of a stream also brings the rest of the one before.
             self.held.clear();
         }
         if self.acts.kind == PacketFaultKind::Reorder
@@ -229,7 +229,7 @@ impl Faulty {
         self.acts.kind == PacketFaultKind::Stall || self.stream.random::<f64>() < self.share
     }
 
-    /// Flips bits, no bit twice.
+    /// Flips bits, each at most once.
     fn corrupt(&mut self, packet: &mut Packet) {
         let len = usize::from(packet.len);
         let (within, never) =

@@ -1,8 +1,7 @@
-//! Packets at a rate of their own, each with the newest sample of every sensor: what `msp`, `vectornav` and `mip`
-//! have in common.
+//! Packets at a fixed rate, each with the newest sample of every sensor: shared by `msp`, `vectornav` and `mip`.
 //!
-//! A packet is due on time whether or not a sample is: one that came later waits for the next packet, and a sensor
-//! without a new one is told again as it was, as a unit that holds its output registers does.
+//! A packet goes out on time whether or not a sample is due. A later sample waits for the next packet, and a sensor
+//! without a new sample repeats its last one, like a unit that holds its output registers.
 
 use super::newest::Told;
 use super::{Newest, Packet, Setup};
@@ -18,15 +17,15 @@ pub(super) const CARRIED: Kinds =
 
 pub(super) struct Latest {
     newest: Newest,
-    /// Whose first sample begins the stream: the gyro, or without one the first sensor.
+    /// The sensor whose first sample begins the stream: the gyro, or without one the first sensor.
     carrier: Option<SensorKind>,
     beat: Ticks,
     next: u64,
 }
 
 impl Latest {
-    /// Packets at the rate that `rate` makes of the first sensor's. Where it leaves that as it is, they follow the
-    /// sensor's ticks, its clock's error included.
+    /// Packets at the rate that `rate` makes of the first sensor's. Where `rate` leaves it unchanged, packets
+    /// follow the sensor's ticks with the error of its clock.
     pub(super) fn new(setup: &Setup<'_>, rate: impl FnOnce(Rate) -> Rate) -> Latest {
         let carrier = setup.sensors.first();
         let (own, clock, phase) = carrier.map_or((Rate::hz(1), Rate::hz(1), SimTime::ZERO), |sensor| {
@@ -37,8 +36,8 @@ impl Latest {
         Latest { newest: Newest::default(), carrier: carrier.map(|sensor| sensor.kind), beat, next: 0 }
     }
 
-    /// Takes in the readings due at `t` and appends the packets due up to then, of the bytes that `write` makes of a
-    /// packet's time and the newest readings.
+    /// Takes the readings due at `t` and appends the packets due up to then; `write` makes the bytes of a packet
+    /// from its time and the newest readings.
     pub(super) fn encode(
         &mut self,
         t: SimTime,
@@ -68,7 +67,7 @@ impl Latest {
         &self.newest.told
     }
 
-    /// Samples of each kind taken in that no packet has carried yet.
+    /// Samples of each kind that no packet has carried yet.
     pub(super) fn waiting(&self) -> ByKind<u64> {
         self.newest.waiting()
     }
@@ -88,7 +87,7 @@ pub(super) fn pascals(newest: &Told) -> f64 {
     newest.pressure(SensorKind::Baro).unwrap_or(SEA_LEVEL_PRESSURE)
 }
 
-/// Body axes in so many of a unit, 0 where there are none.
+/// Body axes in units of `unit`, 0 without a reading.
 pub(super) fn in_units(value: Option<Vector<Body>>, unit: f64) -> [f32; 3] {
     value.map_or([0.0; 3], |value| value.v.to_array().map(|x| (x / unit) as f32))
 }

@@ -7,8 +7,8 @@ use crate::schedule::{Schedule, Ticks};
 use crate::sensor::{Fix, Measured, Measurement, Position, Reading, Shape};
 use crate::time::{NANOS, SimTime};
 
-/// Bytes and packets a second, found by encoding ten seconds of the scene's own ticks. Text is as long as its
-/// numbers: these have as many digits as noise has.
+/// Bytes and packets a second, measured by encoding ten seconds of the scene's own ticks. Text is as long as its
+/// numbers; these have as many digits as noise has.
 pub fn load(protocol: Protocol, setup: &Setup<'_>) -> (f64, f64) {
     const DIGITS: f64 = -0.012_345_678_901_234_568;
     let value = Vector::new(DIGITS, DIGITS, DIGITS);

@@ -1,10 +1,10 @@
-//! `mavlink`: HIL_SENSOR at each gyro tick, HIL_GPS at each of a receiver's, HEARTBEAT and SYSTEM_TIME once a second,
-//! and what is asked for besides.
+//! `mavlink`: HIL_SENSOR at each gyro tick, HIL_GPS at each tick of a receiver, HEARTBEAT and SYSTEM_TIME once a
+//! second, and extra messages on request.
 //!
-//! It speaks as a component of the system that the conversation has found, or of system 1.
-//! A message carries the newest sample of every sensor, with a bit set for each that ticked since the message
-//! before; the temperature of the first sensor that has one in the scene, else the barometer's. Axes are
-//! Forward-Right-Down; the field is in gauss, which is 100 µT, pressure in hPa.
+//! The sender is a component of the system that the conversation has found, or of system 1. A message carries the
+//! newest sample of every sensor, with a bit set for each that ticked since the previous message. Its temperature
+//! is that of the first sensor that has one in the scene, else the barometer's. Axes are Forward-Right-Down; the
+//! field is in gauss (1 G = 100 µT), pressure in hPa.
 
 mod damage;
 mod dialogue;
@@ -49,7 +49,7 @@ pub(super) static ROW: Row = Row {
     inside: |len| (10.min(len)..len, None),
 };
 
-/// The simulator's own ids: the vehicle's system where nothing is known of it, a component of its own.
+/// The simulator's own ids: the vehicle's system if unknown, and a separate component.
 pub(super) const SYSTEM: u8 = 1;
 pub(super) const COMPONENT: u8 = 51;
 
@@ -91,12 +91,12 @@ pub(super) struct Mavlink {
     newest: Newest,
     /// Of gyro, accel and mag: the unit of one count.
     counts: [f64; 3],
-    /// At whose ticks messages go out: the gyro's, or without one the first sensor's.
+    /// The sensor whose ticks send messages: the gyro, or without one the first sensor.
     carrier: Option<SensorKind>,
-    /// What the scene's receiver says of its own fixes.
+    /// The accuracy that the scene's receiver claims for its fixes.
     claims: Option<Claims>,
     unix_us_at_start: Option<u64>,
-    /// Whose temperature is told, where the scene gives one.
+    /// The sensor whose temperature goes out, where the scene gives one.
     warm: Option<SensorKind>,
 }
 
@@ -206,12 +206,12 @@ struct Readings<'a> {
 }
 
 impl Readings<'_> {
-    /// A reading in this unit; 0 before the first.
+    /// A reading in units of `unit`; 0 before the first.
     fn over(&self, kind: SensorKind, unit: f64) -> [f64; 3] {
         self.newest.told.body(kind).map_or([0.0; 3], |value| value.v.to_array().map(|x| x / unit))
     }
 
-    /// °C, where the scene gives one.
+    /// The temperature in °C, where the scene gives one.
     fn temperature(&self) -> Option<f64> {
         self.newest.told.temperature(self.warm?)
     }

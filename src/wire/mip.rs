@@ -1,8 +1,8 @@
 //! `mip`: inertial packets of a MicroStrain unit, at each gyro tick.
 //!
-//! A packet has a field for each sensor that the scene has, and always the pressure: the barometer's, or without one that of the
-//! standard atmosphere at sea level. Axes are forward, right, down; the field is in gauss, specific force in g. The stream ends with a
-//! vehicle that has stopped.
+//! A packet has a field for each sensor in the scene, and always the pressure: the barometer's, or without one that
+//! of the standard atmosphere at sea level. Axes are forward, right, down; the field is in gauss, specific force in
+//! g. The stream ends with a vehicle that has stopped.
 
 mod reader;
 
@@ -28,7 +28,7 @@ pub(super) static ROW: Row = Row {
     check: any,
     greeting: |_| vec![0],
     is_numbered: false,
-    // What says how long a packet is comes first: two sync bytes, the descriptor set and the length.
+    // The length of a packet comes first: two sync bytes, the descriptor set and the length.
     inside: |len| (4.min(len)..len, None),
 };
 

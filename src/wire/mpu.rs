@@ -1,7 +1,7 @@
 //! `mpu`: register images of an MPU-6050 or MPU-9250, as its driver reads them.
 //!
-//! Readings become counts on the chip's axes. A sensor whose scene gives no such scale is carried at ±2000 °/s,
-//! ±16 g and 0.15 µT with ASA 128, and 25 °C.
+//! Readings become counts on the chip's axes. Without a scale in the scene, a sensor uses ±2000 °/s, ±16 g, 0.15 µT
+//! with ASA 128, and 25 °C.
 
 mod dialogue;
 mod reader;
@@ -49,9 +49,9 @@ pub(super) struct Mpu {
     newest: Newest,
     config: config::Repr,
     chip: Chip,
-    /// Of gyro, accel and mag: from body to chip, and the unit of one count.
+    /// Of gyro, accel and mag: the rotation from body to chip, and the unit of one count.
     scales: [(Mount, f64); 3],
-    /// At whose ticks an `imu` goes out, if gyro and accel travel together.
+    /// The sensor whose ticks send an `imu` packet, if gyro and accel share packets.
     burst: Option<SensorKind>,
 }
 
@@ -110,7 +110,7 @@ impl Mpu {
         }
     }
 
-    /// Of the die, °C: the gyro's where there is one.
+    /// Temperature of the die, °C: the gyro's where it has one.
     fn temperature(&self) -> f64 {
         let of = |kind| self.newest.told.temperature(kind);
         of(SensorKind::Gyro).or_else(|| of(SensorKind::Accel)).unwrap_or(REFERENCE_TEMPERATURE)
@@ -124,7 +124,7 @@ impl Mpu {
         })
     }
 
-    /// The newest reading by itself; nothing of a sensor that no chip of these has.
+    /// A packet with the newest reading of this sensor alone; `None` for a sensor that these chips lack.
     fn alone(&self, kind: SensorKind) -> Option<mpu::Packet> {
         Some(match kind {
             SensorKind::Baro | SensorKind::Gps | SensorKind::Airspeed => return None,
@@ -175,7 +175,7 @@ impl Encoder for Mpu {
     }
 }
 
-/// What one count of gyro, accel and mag is: rad/s, m/s², µT.
+/// The size of one count of gyro, accel and mag: rad/s, m/s², µT.
 pub(super) fn counts(sensors: &[SensorPlan]) -> [f64; 3] {
     let plan = |kind| sensors.iter().find(|sensor| sensor.kind == kind);
     let mag = registers::mag_ut_per_lsb(ASA, true);
@@ -190,10 +190,11 @@ fn accel_scale(accel: Option<&SensorPlan>) -> (u8, f64) {
     scale(accel, |config| STANDARD_GRAVITY / registers::accel_lsb_per_g(config))
 }
 
-/// A nominal full scale is up to this much above what 16 bits hold: 1000 °/s at 32.8 LSB/(°/s) is 32 800 counts.
+/// A nominal full scale may exceed what 16 bits hold by this factor: 1000 °/s at 32.8 LSB/(°/s) is 32 800 counts.
 const NOMINAL: f64 = 1.01;
 
-/// The full-scale bits whose count is the scene's, else the least scale that holds its range, else the largest.
+/// The full-scale bits whose count is the scene's, else those of the smallest scale that holds its range, else of
+/// the largest.
 fn scale(sensor: Option<&SensorPlan>, count: impl Fn(u8) -> f64) -> (u8, f64) {
     let scales =
         [0, 1, 2, 3].map(|bits| (registers::full_scale_bits(bits), count(registers::full_scale_bits(bits))));
@@ -205,7 +206,7 @@ fn scale(sensor: Option<&SensorPlan>, count: impl Fn(u8) -> f64) -> (u8, f64) {
     *exact.or(holding).unwrap_or(&scales[3])
 }
 
-/// At whose ticks gyro and accel travel together: asked for, or of themselves when they tick alike.
+/// The sensor at whose ticks gyro and accel go out together: on request, or by default when their ticks agree.
 fn burst(setup: &Setup<'_>, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -> Option<SensorKind> {
     let (gyro, accel) = (gyro?, accel?);
     let alike = gyro.clock() == accel.clock() && gyro.phase == accel.phase;
@@ -214,19 +215,20 @@ fn burst(setup: &Setup<'_>, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan
     together.then_some(faster)
 }
 
-/// CONFIG and SMPLRT_DIV of the rate of the faster sensor and of the gyro's low-pass filter, or without a gyro the
-/// accelerometer's: the nearest bandwidth that goes with the rate. Without a filter DLPF_CFG is 1 up to 1 kHz, 0 above.
+/// CONFIG and SMPLRT_DIV for the rate of the faster sensor and the gyro's low-pass filter (the accelerometer's
+/// without a gyro): the nearest bandwidth available at that rate. Without a filter DLPF_CFG is 1 up to 1 kHz, 0
+/// above.
 fn sampling(chip: Chip, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -> (u8, u8) {
     let hz = [gyro, accel].into_iter().flatten().map(|sensor| sensor.rate.as_hz()).fold(0.0, f64::max);
     let divider = |undivided: f64| (libm::round(undivided / hz) - 1.0).clamp(0.0, 255.0) as u8;
-    // Half a per cent, as the clocks of these parts do not keep.
+    // Half a per cent of tolerance: the clocks of these parts are less accurate.
     if hz > 1005.0 {
         return (0, if chip == Chip::Mpu60x0 { divider(8000.0) } else { 0 });
     }
     let filter = gyro.or(accel).and_then(|sensor| sensor.values.table("filter")?.scalar("low_pass"));
     let Some(cut_off) = filter else { return (1, divider(1000.0)) };
     let bandwidths = chip.gyro_bandwidths_hz();
-    // 8 kHz are divided by an MPU-6050 alone, and by 256 at most.
+    // Only an MPU-6050 divides 8 kHz, and by 256 at most.
     let widest = if chip == Chip::Mpu60x0 && hz >= 8000.0 / 256.0 { 0 } else { 1 };
     let off = |config: &u8| libm::log(bandwidths[usize::from(*config)] / cut_off).abs();
     let config = (widest..=6).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(1);

@@ -1,8 +1,8 @@
 //! `msp`: INAV's simulator message, all sensors in one, at most 100 a second.
 //!
-//! Axes are forward, left, up. The field is sent as its direction, the place's strength as 20480 counts, with its
-//! horizontal part turned to true north: INAV takes the declination as 0. INAV keeps what came last for ever, so the
-//! stream ends with a vehicle that has stopped.
+//! Axes are forward, left, up. The field goes out as a direction, scaled so that the place's strength is 20480
+//! counts, with its horizontal part turned to true north: INAV takes the declination as 0. INAV keeps the last
+//! values for ever, so the stream ends with a vehicle that has stopped.
 
 mod dialogue;
 mod reader;
@@ -39,25 +39,25 @@ pub(super) static ROW: Row = Row {
     check: any,
     greeting: |_| reader::question(),
     is_numbered: false,
-    // What says how long a packet is comes first: `$X`, direction, flags, command and size.
+    // The length of a packet comes first: `$X`, direction, flags, command and size.
     inside: |len| (8.min(len)..len, None),
 };
 
-/// As many packets a second as an INAV board takes.
+/// The most packets a second that an INAV board accepts.
 pub(super) const FASTEST: Rate = Rate::hz(100);
 
 /// The field's strength in counts.
 const FIELD: f64 = 20480.0;
-/// Counts a deg/s.
+/// Counts for one deg/s.
 pub(super) const GYRO_SCALE: f64 = 16.0;
-/// Counts a g.
+/// Counts for one g.
 pub(super) const ACCEL_SCALE: f64 = 1000.0;
 
 const FLAGS: u8 = simulator::ENABLE | simulator::BATTERY | simulator::MUTE | simulator::OWN_ESTIMATE;
 
 pub(super) struct Msp {
     latest: Latest,
-    /// The readings of the moment, the field turned.
+    /// The present readings, with the field turned.
     turned: Vec<Reading>,
     last: Option<Truth>,
     has_mag: bool,
@@ -113,7 +113,7 @@ impl Encoder for Msp {
     }
 }
 
-/// What the place's field lacks, on the body's axes, to point to true north. Added to a reading it leaves the
+/// The vector, in body axes, that turns the place's field to true north. Added to a reading, it leaves the
 /// magnetometer's own errors on its own axes.
 fn to_true_north(truth: &Truth) -> Vector<Body> {
     let field = truth.attitude.apply(truth.field);
@@ -124,7 +124,7 @@ fn to_true_north(truth: &Truth) -> Vector<Body> {
     truth.attitude.inverse().apply(turned - field)
 }
 
-/// The frame of gyro, accel and mag; `strength` is the place's field in µT, `pressure` in Pa.
+/// The frame of gyro, accel and mag. `strength` is the place's field in µT, `pressure` in Pa.
 fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64, buffer: &mut [u8]) -> usize {
     let field = if strength > 0.0 { FIELD / strength } else { 0.0 };
     let message = Message::Simulator(simulator::Repr {
@@ -140,7 +140,7 @@ fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64, bu
     msp::encode(&message, buffer).unwrap_or(0)
 }
 
-/// Forward, left and up in the nearest counts, clipped to what fits.
+/// Forward, left and up, rounded to counts and clipped to 16 bits.
 fn counts(value: Vector<Body>, scale: f64) -> [i16; 3] {
     let [x, y, z] = value.v.to_array();
     [x, -y, -z].map(|axis| libm::round(axis * scale) as i16)

@@ -6,32 +6,32 @@ use crate::geometry::{Body, Vector};
 use crate::sensor::{ByKind, Kinds, Measurement, REFERENCE_TEMPERATURE, Reading, SensorKind};
 use crate::time::SimTime;
 
-/// What each sensor said last: a part of its reading, for a reading has six times the bytes.
+/// The last value of each sensor. It keeps only this part of a reading, because a reading has six times the bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Told(ByKind<Option<(Sensed, f64)>>);
 
 impl Told {
-    /// Whether a sensor of this kind said anything; of a receiver, never: a fix is not kept.
+    /// Whether a sensor of this kind has a value; never for a receiver, whose fix is not kept.
     pub fn has(&self, kind: SensorKind) -> bool {
         self.0[kind as usize].is_some()
     }
 
-    /// Body axes.
+    /// Its value in body axes.
     pub fn body(&self, kind: SensorKind) -> Option<Vector<Body>> {
         self.0[kind as usize]?.0.body()
     }
 
-    /// Pa.
+    /// Its pressure, Pa.
     pub fn pressure(&self, kind: SensorKind) -> Option<f64> {
         self.0[kind as usize]?.0.pressure()
     }
 
-    /// Of the part, °C.
+    /// Temperature of the sensor, °C.
     pub fn temperature(&self, kind: SensorKind) -> Option<f64> {
         Some(self.0[kind as usize]?.1)
     }
 
-    /// Says other body axes in the place of what was said, or nothing.
+    /// Replaces the value of a sensor, or removes it.
     pub fn put(&mut self, kind: SensorKind, body: Option<Vector<Body>>) {
         self.0[kind as usize] = body.map(|body| (Sensed::Body(body), REFERENCE_TEMPERATURE));
     }
@@ -51,7 +51,7 @@ impl Told {
 pub(super) struct Newest {
     pub told: Told,
     pub fresh: Kinds,
-    /// The kinds whose samples a newer one replaced before a packet carried them, and how many of each.
+    /// The kinds whose samples a newer one replaced before a packet carried them, and their counts.
     thinned: Kinds,
     replaced: ByKind<u32>,
 }
@@ -74,7 +74,7 @@ impl Newest {
             .map(|kind| u64::from(self.fresh.contains(kind)) + u64::from(self.replaced[kind as usize]))
     }
 
-    /// A packet of these bytes that carries the fresh samples among `kinds`.
+    /// A packet of these bytes; it carries the fresh samples among `kinds`.
     pub fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
         let mut packet = Packet::new(due, self.fresh & kinds, bytes);
         let thinned = self.thinned & kinds;

@@ -1,12 +1,12 @@
-//! One packet as it is handed from thread to thread.
+//! One packet, as threads pass it on.
 
 use crate::sensor::{ByKind, Kinds, SensorKind};
 use crate::time::SimTime;
 
-/// The longest packet of any protocol, bytes: a signed MAVLink 2 message, such as a ground station may send.
+/// The longest packet of any protocol, bytes: a signed MAVLink 2 message, which a ground station may send.
 pub const MAX_PACKET: usize = 280;
 
-/// One packet: when it is due, what it carries, its bytes. Plain data of fixed size, so that handing it over
+/// One packet: its due time, the samples it carries, its bytes. Plain data of fixed size, so that passing it on
 /// allocates nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Packet {
@@ -16,15 +16,16 @@ pub struct Packet {
     pub carries: Kinds,
     /// Samples of each kind that a newer one replaced before any packet carried them.
     pub replaced: ByKind<u32>,
-    /// How many of its bytes go out at once, the others a little later; 0 = all of them. Of a packet without bytes: how
-    /// many bytes of the one before go out then.
+    /// How many of its bytes go out at once, with the others a little later; 0 = all of them. For a packet without
+    /// bytes: how many bytes of the previous packet go out then.
     pub piece: u16,
     pub(super) len: u16,
     pub(super) bytes: [u8; MAX_PACKET],
 }
 
 impl Packet {
-    /// A packet of these bytes, due then; longer ones are cut at [`MAX_PACKET`], which no protocol here reaches.
+    /// A packet of these bytes, due at `due`. Truncates bytes beyond [`MAX_PACKET`], which no protocol here
+    /// reaches.
     pub fn new(due: SimTime, carries: Kinds, bytes: &[u8]) -> Packet {
         debug_assert!(bytes.len() <= MAX_PACKET, "{} bytes", bytes.len());
         let len = bytes.len().min(MAX_PACKET);
@@ -40,17 +41,18 @@ impl Packet {
         packet
     }
 
-    /// No packet, but a time at which something is due: `piece` bytes of the packet before that are held back, or 0.
+    /// No packet, but a time at which something is due: `piece` bytes of the previous packet that were held back,
+    /// or 0.
     pub fn nothing(due: SimTime, piece: u16) -> Packet {
         Packet { piece, ..Packet::new(due, Kinds::NONE, &[]) }
     }
 
-    /// Samples of a kind that end with it: the one that it carries, and those that were replaced before it.
+    /// The number of samples of a kind that end with it: the one that it carries, and those replaced before it.
     pub fn samples(&self, kind: usize) -> u64 {
         u64::from(self.carries.contains(SensorKind::ALL[kind])) + u64::from(self.replaced[kind])
     }
 
-    /// Whether it is no packet.
+    /// Whether it is [`Packet::nothing`].
     pub fn is_nothing(&self) -> bool {
         self.len == 0
     }

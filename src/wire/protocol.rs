@@ -1,4 +1,4 @@
-//! The protocols as a table: to add one, its folder, its variant, and its line in `ROWS`.
+//! The table of protocols: to add one, write its folder, its variant, and its line in `ROWS`.
 
 use super::dialogue::Dialogue;
 use super::row::Row;
@@ -6,7 +6,7 @@ use super::{Controller, Encoder, Now, Options, Packet, Setup, mavlink, mip, mpu,
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::SimTime;
 
-/// What the packets look like.
+/// The format of the packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Protocol {
@@ -20,13 +20,13 @@ pub enum Protocol {
     Vectornav,
     /// MicroStrain inertial packets, for ArduPilot.
     Mip,
-    /// A line of comma-separated values a reading.
+    /// A line of comma-separated values for each reading.
     Csv,
-    /// A JSON object a reading.
+    /// A JSON object for each reading.
     Jsonl,
 }
 
-/// Every protocol's row, in order.
+/// Every protocol's row, in the order of the variants.
 static ROWS: [&Row; 7] =
     [&mpu::ROW, &mavlink::ROW, &msp::ROW, &vectornav::ROW, &mip::ROW, &text::CSV, &text::JSONL];
 
@@ -42,12 +42,12 @@ impl Protocol {
         Protocol::Jsonl,
     ];
 
-    /// All that is known of it.
+    /// Its row.
     pub(super) fn row(self) -> &'static Row {
         ROWS[self as usize]
     }
 
-    /// As `--to` spells it.
+    /// Its name in `--to`.
     pub fn name(self) -> &'static str {
         self.row().name
     }
@@ -67,19 +67,19 @@ impl Protocol {
         self.row().about
     }
 
-    /// The conversation, as `controller` wants it led; `None` where the other side says nothing.
+    /// The dialogue for `controller`; `None` where the other side says nothing.
     pub fn dialogue(self, controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
         (self.row().dialogue)(controller)
     }
 
-    /// Bytes that make a sender begin which waits for some: a ground station's heartbeat in MAVLink, and in the others
-    /// bytes that mean nothing. `seq` is the sequence number of a heartbeat.
+    /// Bytes that start a sender which waits for some: a ground station's heartbeat in MAVLink, bytes without a
+    /// meaning in the others. `seq` is the sequence number of a heartbeat.
     pub fn greeting(self, seq: u8) -> Vec<u8> {
         (self.row().greeting)(seq)
     }
 }
 
-/// The encoder of a protocol; readings that it does not carry do not reach it.
+/// The encoder of a protocol. Readings that it does not carry do not reach it.
 pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
     let encoder = (protocol.row().encoder)(setup);
     match setup.sensors.iter().all(|sensor| protocol.carries(sensor.kind)) {
@@ -88,7 +88,7 @@ pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
     }
 }
 
-/// Hands on the readings of the kinds that the protocol carries.
+/// Passes on readings only of the kinds that the protocol carries.
 struct Picky {
     protocol: Protocol,
     encoder: Box<dyn Encoder>,
@@ -111,16 +111,16 @@ impl Encoder for Picky {
     }
 }
 
-/// Whether a protocol can carry these sensors.
+/// Checks that a protocol can carry these sensors.
 ///
 /// # Errors
-/// Why not, and what would be right.
+/// Why it cannot, and what would be right.
 pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> Result<(), String> {
     (protocol.row().check)(options, sensors)
 }
 
-/// What a protocol cannot carry of these sensors, for `check` and the report: it does not send a kind that it has no
-/// field for, and a sensor faster than the packets that carry it loses samples to newer ones.
+/// What a protocol cannot carry of these sensors, for `check` and the report: it does not send a kind without a
+/// field, and a sensor faster than the packets that carry it loses samples to newer ones.
 pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
     let (carried, left): (Vec<_>, Vec<_>) = sensors.iter().partition(|sensor| protocol.carries(sensor.kind));
     let unsent = left.into_iter().map(|sensor| {
@@ -129,7 +129,7 @@ pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
     unsent.chain(replaced(protocol, &carried)).collect()
 }
 
-/// What is said of sensors faster than the packets that carry them.
+/// The warnings about sensors faster than the packets that carry them.
 fn replaced(protocol: Protocol, sensors: &[&SensorPlan]) -> Vec<String> {
     let shared = sensors.first().and_then(|first| (protocol.row().shared)(first));
     let Some(shared) = shared else { return Vec::new() };

@@ -1,7 +1,7 @@
-//! The stream of any protocol back to samples: what a receiver that knows nothing of the scene can read.
+//! The stream of any protocol to samples: everything that a receiver can read without knowing the scene.
 //!
-//! Each protocol is one file that hands on every [`Sample`] and counts what came besides ([`Counts`]). Nothing
-//! panics on any bytes, memory stays bounded, and damage costs at most itself.
+//! Each protocol is one file that passes on every [`Sample`] and counts everything else ([`Counts`]). No bytes
+//! cause a panic, memory stays bounded, and damage costs at most the damaged packets.
 
 pub(super) mod log;
 mod stream;
@@ -16,25 +16,24 @@ use ratetable_protocols::Losses;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// One sample of one sensor, as a packet says it.
+/// One sample of one sensor, as a packet carries it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// What is sensed.
+    /// The kind of sensor.
     pub kind: SensorKind,
     /// Which of several sensors of that kind on the link.
     pub source: Source,
-    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text, `vectornav`, `mip`: ns; some
-    /// MAVLink messages: ms). The 32 bits of `mpu` and `mip` go on counting here where they wrap.
+    /// When it was taken by the sender's clock, if the packet gives it, in whole µs (text, `vectornav`, `mip`: ns;
+    /// some MAVLink messages: ms). The 32-bit times of `mpu` and `mip` are unwrapped here.
     pub t: Option<SimTime>,
-    /// The reading; `None` where the packet does not say what its counts mean
-    /// (`mpu` before its first config packet, raw messages, the field in `msp`) or that they mean nothing (an
-    /// overflow).
+    /// The reading. `None` where the packet does not give the scale of its counts (`mpu` before its first config
+    /// packet, raw messages, the field in `msp`) or marks them as invalid (an overflow).
     pub value: Option<Sensed>,
-    /// What else is known of its packet.
+    /// More about its packet.
     pub packet: Carrier,
 }
 
-/// What a sample says.
+/// The value of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Sensed {
@@ -45,7 +44,7 @@ pub enum Sensed {
 }
 
 impl Sensed {
-    /// Body axes; `None` of a pressure.
+    /// The value in body axes; `None` for a pressure.
     pub fn body(self) -> Option<Vector<Body>> {
         match self {
             Sensed::Body(body) => Some(body),
@@ -53,7 +52,7 @@ impl Sensed {
         }
     }
 
-    /// Pa; `None` of body axes.
+    /// The pressure in Pa; `None` for body axes.
     pub fn pressure(self) -> Option<f64> {
         match self {
             Sensed::Pressure(pascals) => Some(pascals),
@@ -61,13 +60,13 @@ impl Sensed {
         }
     }
 
-    /// Body axes in so many of our units; `None` where they are no numbers.
+    /// Body axes, from units of `unit`; `None` where a component is not finite.
     pub(super) fn triad(values: [impl Into<f64>; 3], unit: f64) -> Option<Sensed> {
         let [x, y, z] = values.map(Into::into);
         Sensed::Body(Vector::new(x, y, z) * unit).known()
     }
 
-    /// Itself, unless it is no number.
+    /// The value itself, or `None` if it is not finite.
     pub(super) fn known(self) -> Option<Sensed> {
         let is_number = match self {
             Sensed::Body(body) => body.v.is_finite(),
@@ -77,21 +76,21 @@ impl Sensed {
     }
 }
 
-/// What is known of the packet that brings a sample, beside what it says.
+/// What is known of the packet of a sample, beside its content.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Carrier {
-    /// When it arrived, since 1970, where a recording says so.
+    /// Its arrival since 1970, where a recording gives it.
     pub arrived: Option<SimTime>,
-    /// How many packets of its sender were lost up to here, where they have numbers.
+    /// How many packets its sender lost up to here, if they have sequence numbers.
     pub lost: Option<u64>,
 }
 
-/// Who among several sensors of a kind a sample is from.
+/// Which of several sensors of a kind a sample comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Source {
-    /// The MAVLink message, in lower case; the protocol's name for the others, which have one sensor of a kind.
+    /// The MAVLink message, in lower case; for the others, which have one sensor of a kind, the protocol's name.
     pub message: &'static str,
-    /// The MAVLink system, component and the set of sensors that the message names; 0 for the others.
+    /// The MAVLink system, component and the sensor set that the message names; 0 for the others.
     pub set: [u8; 3],
 }
 
@@ -103,7 +102,7 @@ impl Source {
 }
 
 impl fmt::Display for Source {
-    /// `mpu`, `hil_sensor 1/51/0`: the message, and where it matters its system, component and set.
+    /// `mpu`, `hil_sensor 1/51/0`: the message, and where needed its system, component and set.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Source { message, set: [system, component, set] } = self;
         match self.set {
@@ -113,65 +112,65 @@ impl fmt::Display for Source {
     }
 }
 
-/// What the packets do not say, so that a reader has to assume it.
+/// What a reader must assume because the packets do not carry it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumed {
-    /// The axes that text is written in.
+    /// The axes of text.
     pub axes: Axes,
-    /// From body to the chip's axes, of gyro, accel and mag, for the registers of `mpu`.
+    /// From body to chip axes, of gyro, accel and mag, for the registers of `mpu`.
     pub mounts: [Mount; 3],
     /// Whether it is a recording, which may have a stamp before each packet.
     pub recorded: bool,
 }
 
 impl Default for Assumed {
-    /// Forward-right-down, and chips whose x points forward and z up, as the encoders of a plain scene have it.
+    /// Forward-right-down, and chips with x forward and z up, which is what the encoders use for a plain scene.
     fn default() -> Assumed {
         Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3], recorded: false }
     }
 }
 
-/// What a stream has brought so far.
+/// Counts of what a stream brought so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Bytes taken in.
+    /// Bytes received.
     pub bytes: u64,
-    /// Whole packets of the protocol, sensors' or not; a line of text is a packet, the line of names too.
+    /// Whole packets of the protocol, with samples or not; each line of text is a packet, the header line too.
     pub packets: u64,
-    /// Packets that fail their checksum or are cut short, and stretches of other bytes. Where several in a row cannot be
-    /// told apart, MAVLink's numbers say how many they were; without numbers such a stretch counts as one.
+    /// Packets that fail their checksum or are truncated, and stretches of other bytes. MAVLink's sequence numbers
+    /// show how many packets one stretch hides; without sequence numbers it counts as one.
     pub damaged: u64,
     /// 1 if the stream began in the middle of a packet, which is no damage.
     pub joined_midway: u64,
-    /// Packets missing by the sequence number, damaged ones included: the number counts modulo 256 for each sender,
-    /// so a longer gap counts what is left of it after whole turns. 0 for protocols without a number.
+    /// Packets missing by sequence number, damaged ones included. The number counts modulo 256 for each sender, so
+    /// of a longer gap only the remainder counts. 0 for protocols without sequence numbers.
     pub lost: u64,
     /// Packets whose number came twice in a row.
     pub duplicates: u64,
-    /// Packets that one with a later number overtook, sixteen places at most; they are not lost.
+    /// Packets that one with a later number overtook, by at most sixteen places; they are not lost.
     pub out_of_order: u64,
-    /// Whether packets have a sequence number at all.
+    /// Whether packets have sequence numbers.
     pub numbered: bool,
-    /// Packets whose checksum cannot be checked, because their id is beyond the dialects `common` and `ardupilotmega`:
-    /// they show no gap, but fill one.
+    /// Packets whose checksum cannot be checked because their id is outside the dialects `common` and
+    /// `ardupilotmega`. They show no gap, but fill one.
     pub unchecked: u64,
-    /// The stamps of a recording that has one in front of each packet.
+    /// The stamps of a recording that has one before each packet.
     pub stamps: Option<Stamps>,
     /// Packets that carry no sample, by name.
     pub foreign: BTreeMap<String, u64>,
 }
 
 impl Counts {
-    /// As many names of foreign packets as are kept apart.
+    /// How many names of foreign packets are counted separately.
     const NAMES: usize = 64;
 
-    /// Counts what is no packet: damage, unless the stream was joined there.
+    /// Counts bytes that are no packet: damage, unless the stream began there.
     pub(super) fn refuse(&mut self) {
         let first = self.packets == 0 && self.damaged == 0 && self.joined_midway == 0;
         *if first { &mut self.joined_midway } else { &mut self.damaged } += 1;
     }
 
-    /// Takes in the number of a packet by the sender that `losses` keeps account of.
+    /// Records the sequence number of a packet from the sender that `losses` tracks.
     pub(super) fn number(&mut self, losses: &mut Losses, seq: u8) {
         let before = *losses;
         losses.observe(seq);
@@ -190,12 +189,12 @@ impl Counts {
     }
 }
 
-/// Reads a protocol's packets back to samples.
+/// Reads a protocol's packets into samples.
 pub(super) trait Reader: Send {
-    /// Takes bytes in as they arrive, and hands every sample in them to `each`.
+    /// Processes bytes as they arrive, and passes every sample in them to `each`.
     fn feed(&mut self, bytes: &[u8], counts: &mut Counts, each: &mut dyn FnMut(Sample));
 
-    /// Judges what is held as if nothing more were to come.
+    /// Reads held bytes as if the stream ended here.
     fn finish(&mut self, _counts: &mut Counts, _each: &mut dyn FnMut(Sample)) {}
 }
 

@@ -1,4 +1,4 @@
-//! What the encoders make, read back by the decoders that a firmware uses.
+//! The encoders' output, read back by the decoders that a firmware uses.
 
 use super::*;
 use crate::earth::Place;
@@ -48,7 +48,7 @@ pub(super) fn play(
     (packets, readings)
 }
 
-/// The `mpu` packets as a driver sees them, each with what it was sent as.
+/// The `mpu` packets as a driver sees them, each with the packet that was sent.
 fn driven(packets: &[Packet]) -> Vec<(&Packet, mpu::Packet)> {
     let mut decoder = mpu::Decoder::new();
     let mut all = Vec::new();
@@ -67,7 +67,7 @@ fn of(readings: &[(SimTime, Reading)], kind: SensorKind) -> Vec<&(SimTime, Readi
     readings.iter().filter(|(_, reading)| reading.kind == kind).collect()
 }
 
-/// Counts on the chip's axes, z up, against the reading: within half a count.
+/// Compares counts on the chip's axes, z up, with the reading: within half a count.
 fn counts_match(counts: [i16; 3], reading: &Reading, count: f64) {
     let chip = Mount::flu().to_chip(reading.body().unwrap().value).v.to_array();
     for (raw, value) in counts.iter().zip(chip) {
@@ -310,7 +310,7 @@ fn mpu_scales_and_chip_follow_the_scene() {
     );
 }
 
-/// The messages of `mavlink` packets, each with what it was sent as.
+/// The messages of `mavlink` packets, each with the packet that was sent.
 pub(super) fn flown(packets: &[Packet]) -> Vec<(&Packet, Message)> {
     let mut decoder = mavlink::Decoder::new();
     let mut all = Vec::new();
@@ -423,7 +423,7 @@ fn text_reads_back_to_the_same_bits_in_the_scenes_axes() {
                 (object["t_ns"].as_i64(), object["sensor"].as_str()),
                 (Some(t.0), Some(reading.kind.name()))
             );
-            // The numbers as written, not as the library that we also use reads them.
+            // Compare the text itself: the library that we also use could misread its own output.
             let text = std::str::from_utf8(json.bytes()).unwrap();
             let number = |key: &str| {
                 text.split_once(key).unwrap().1.split([',', '}']).next().unwrap().parse::<f64>().unwrap()
@@ -443,7 +443,7 @@ fn the_load_is_what_is_sent() {
         let bytes = packets.iter().map(|packet| packet.bytes().len()).sum::<usize>() as f64;
         let (bytes_per_s, packets_per_s) = load(protocol, &setup(&plan, None));
         assert_eq!(packets_per_s, packets.len() as f64 / 10.0, "{protocol:?}");
-        // Numbers in text differ in length; none of the others do.
+        // Numbers in text differ in length; those of the others do not.
         let slack = if matches!(protocol, Protocol::Csv | Protocol::Jsonl) { 0.2 } else { 0.0 };
         let ratio = bytes_per_s / (bytes / 10.0);
         assert!((1.0..=1.0 + slack).contains(&ratio), "{protocol:?}: {ratio}");
@@ -463,7 +463,7 @@ fn protocols_have_names_and_a_burst_needs_both_sensors() {
     assert!(check(Protocol::Mpu, &Options::default(), &gyro.sensors).is_ok());
 }
 
-/// A sensor's ticks, where there is one.
+/// A sensor's ticks, if it exists.
 fn any_ticks() -> impl Strategy<Value = Option<(u64, u64, i64)>> {
     prop_oneof![1 => Just(None), 3 => (1..400u64, 1..7u64, 0..300_000_000i64).prop_map(Some)]
 }
@@ -636,7 +636,7 @@ fn a_line_of_text_has_what_the_aid_says() {
         seen += 1;
     }
     assert_eq!(seen, 75 + 15);
-    // The longest numbers there are still fit a packet.
+    // The longest numbers still fit a packet.
     let longest = f64::from_bits(0x800f_ffff_ffff_fffe);
     let place = Place {
         latitude: -1.234_567_890_123_456_7e-100,

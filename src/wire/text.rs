@@ -1,4 +1,4 @@
-//! `csv` and `jsonl`: one line a reading, for eyes, plotters and quick scripts.
+//! `csv` and `jsonl`: one line for each reading, for people, plotters and quick scripts.
 
 mod reader;
 
@@ -24,7 +24,7 @@ pub(super) static JSONL: Row = lines(
     |assumed| Box::new(reader::Reader::jsonl(assumed.axes)),
 );
 
-/// A protocol of lines.
+/// A line-based protocol.
 const fn lines(
     name: &'static str,
     about: &'static str,
@@ -55,8 +55,8 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// `t_ns,sensor,x,y,z`, named in a first line. Of a barometer x is the pressure and the others are empty; of a GPS
-    /// receiver they are latitude and longitude in degrees and altitude, and its velocity follows.
+    /// `t_ns,sensor,x,y,z`, named in a first line. For a barometer x is the pressure and the others are empty. For
+    /// a GPS receiver they are latitude and longitude in degrees and altitude, followed by its velocity.
     pub(super) fn csv(setup: &Setup<'_>) -> Text {
         Text {
             axes: setup.axes,
@@ -69,7 +69,7 @@ impl Text {
         }
     }
 
-    /// One JSON object a line.
+    /// One JSON object on each line.
     pub(super) fn jsonl(setup: &Setup<'_>) -> Text {
         Text { axes: setup.axes, json: true, header: None, line: Vec::with_capacity(256) }
     }
@@ -91,7 +91,7 @@ impl Text {
         }
     }
 
-    /// A line of these numbers, called so in JSON; in CSV no line has fewer than three.
+    /// A line of these numbers with their JSON names; a CSV line has at least three.
     fn cells(&mut self, t: SimTime, kind: SensorKind, cells: &[(&str, f64)]) {
         let (t, name, line) = (t.0, kind.name(), &mut self.line);
         line.clear();

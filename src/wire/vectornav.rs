@@ -1,9 +1,9 @@
-//! `vectornav`: the two binary outputs that ArduPilot asks a VN-100 for.
+//! `vectornav`: the two binary outputs that ArduPilot requests from a VN-100.
 //!
-//! IMU packets go out at the rate that the flight controller asked for, or else the gyro's; AHRS packets 50 times a
-//! second with the true attitude, at the first tick of any sensor at or after their time. ArduPilot's own estimators
-//! do not use that one. Axes are forward, right, down; the field is in gauss. The stream ends with a vehicle that has
-//! stopped.
+//! IMU packets go out at the rate that the flight controller requested, else at the gyro's. AHRS packets with the
+//! true attitude go out 50 times a second, at the first tick of any sensor at or after their time; ArduPilot's own
+//! estimators do not use it. Axes are forward, right, down; the field is in gauss. The stream ends with a vehicle
+//! that has stopped.
 
 mod dialogue;
 mod reader;
@@ -30,7 +30,7 @@ pub(super) static ROW: Row = Row {
     check: any,
     greeting: |_| b"\n".to_vec(),
     is_numbered: false,
-    // What says how long a packet is comes first: the sync byte with up to five of groups and fields.
+    // The length of a packet comes first: the sync byte and up to five bytes of groups and fields.
     inside: |len| (6.min(len)..len, None),
 };
 
@@ -42,7 +42,7 @@ const PASCALS_A_KILOPASCAL: f64 = 1000.0;
 
 pub(super) struct Vectornav {
     latest: Latest,
-    /// Which AHRS packet is next.
+    /// The index of the next AHRS packet.
     next: u64,
     last: Option<Truth>,
     has_mag: bool,

@@ -1,9 +1,9 @@
-//! MAVLink frames as they are, for handing them on.
+//! Unparsed MAVLink frames, for forwarding.
 
 use ratetable_protocols::mavlink::Version;
 
-/// Whole MAVLink frames (1 or 2) in a datagram, one after another as a ground station sends them; their checksums are
-/// the business of whom they are for. What is no frame ends it.
+/// Whole MAVLink frames (1 or 2) in a datagram, one after another as a ground station sends them. Stops at bytes
+/// that are no frame. The receiver checks the checksums.
 pub fn frames(mut datagram: &[u8]) -> impl Iterator<Item = &[u8]> {
     std::iter::from_fn(move || {
         let (frame, rest) = datagram.split_at_checked(length(datagram)?)?;
@@ -12,7 +12,7 @@ pub fn frames(mut datagram: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// How long the frame at the start of these bytes is: header, payload, checksum and signature.
+/// The length of the frame at the start of these bytes: header, payload, checksum and signature.
 fn length(bytes: &[u8]) -> Option<usize> {
     let (&magic, &payload) = (bytes.first()?, bytes.get(1)?);
     let version = [Version::V1, Version::V2].into_iter().find(|version| version.magic() == magic)?;

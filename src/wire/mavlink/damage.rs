@@ -1,27 +1,28 @@
-//! How many packets damage cost, where packets have numbers: a stretch of bytes that cannot be read may hide several.
+//! The number of packets that damage cost, where packets have sequence numbers: one unreadable stretch of bytes may
+//! hide several.
 
 use std::collections::VecDeque;
 
-/// As many stretches as are remembered for a sender that is seldom heard.
+/// The number of stretches to remember for a sender that is seldom heard.
 const KEPT: usize = 256;
 
-/// The stretches of damaged bytes of a stream, each counted as one packet until numbers say more.
+/// The stretches of damaged bytes in a stream. Each counts as one packet until sequence numbers show more.
 #[derive(Default)]
 pub(super) struct Stretches {
     recent: VecDeque<Stretch>,
-    /// How many there were.
+    /// How many there have been.
     begun: u64,
 }
 
 struct Stretch {
-    /// As many packets as its bytes may have been; 0 until it has ended.
+    /// The number of packets that its bytes may have held; 0 until it ends.
     room: u64,
-    /// Packets missing by their numbers that it is held to account for.
+    /// Missing packets, by sequence number, that are attributed to it.
     hidden: u64,
 }
 
 impl Stretches {
-    /// Begins one, counted as one packet.
+    /// Begins a stretch, counted as one packet.
     pub fn begin(&mut self) {
         if self.recent.len() == KEPT {
             self.recent.pop_front();
@@ -30,20 +31,20 @@ impl Stretches {
         self.begun += 1;
     }
 
-    /// Ends the newest, if it has not ended: so many bytes, and so many in the shortest packet of the stream.
+    /// Ends the newest stretch, if it has not ended: its length in bytes, and that of the stream's shortest packet.
     pub fn end(&mut self, bytes: usize, shortest: usize) {
         if let Some(stretch) = self.recent.back_mut().filter(|stretch| stretch.room == 0) {
             stretch.room = (bytes / shortest.max(1)).max(1) as u64;
         }
     }
 
-    /// How many there were.
+    /// How many there have been.
     pub fn begun(&self) -> u64 {
         self.begun
     }
 
-    /// Lays so many packets, missing since there were `since` stretches, to those that came after: one to each, then
-    /// as many as the bytes of each may have been. How many more are damaged than was counted.
+    /// Attributes `missing` packets to the stretches after the first `since`: one to each, then as many as each may
+    /// have held. Returns how many more are damaged than were counted.
     pub fn claim(&mut self, since: u64, missing: u64) -> u64 {
         let forgotten = self.begun - self.recent.len() as u64;
         let first = since.saturating_sub(forgotten) as usize;

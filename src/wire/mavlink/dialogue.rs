@@ -1,8 +1,8 @@
-//! `mavlink`: an autopilot's heartbeat, its attitude and clock, and what of it a ground station would see.
+//! `mavlink`: an autopilot's heartbeat, attitude and clock, and the messages for a ground station.
 //!
-//! The first autopilot heard is the one: its system id is shared ([`Peer::system`]) and what others say of attitude
-//! is passed on and not taken for its own. Answers go out in the MAVLink version in which it speaks.
-//! PX4 has ways of its own, on its board ([`px4`]) and as a program in lockstep.
+//! The first autopilot heard is the other side. The scene shares its system id ([`Peer::system`]); attitudes of
+//! other senders are forwarded but are not its estimates. Replies use the MAVLink version in which it speaks. PX4
+//! has its own procedure, on its board ([`px4`]) and as a program in lockstep.
 
 mod asking;
 mod parameters;
@@ -24,11 +24,11 @@ use ratetable_protocols::mavlink::{
 };
 use voice::Voice;
 
-/// MAV_TYPE_GCS: a ground station, which may name an autopilot's make but is none.
+/// MAV_TYPE_GCS: a ground station. It may name an autopilot's make but is none.
 const GROUND_STATION: u8 = 6;
 
-/// An autopilot that tells its attitude both ways tells the same estimate twice: the quaternion counts, and Euler
-/// angles only when none has come for so long, ns.
+/// An autopilot may send the same estimate as quaternion and as Euler angles. The quaternion counts; Euler angles
+/// count only after this long without a quaternion, ns.
 const QUATERNION_GONE: i64 = 1_000_000_000;
 
 /// The conversation on one link.
@@ -47,17 +47,17 @@ struct Autopilot {
     base_mode: u8,
 }
 
-/// What is waited for before the scene may start.
+/// The condition for the scene to start.
 enum Way {
     /// Nothing.
     Any,
-    /// PX4 on its board: its heartbeat, then its estimator.
+    /// PX4 on its board: its heartbeat, then its settled estimator.
     Hitl(Box<Px4>),
-    /// PX4 as a program: that it answers samples.
+    /// PX4 as a program: its first answer to samples.
     Sitl { took: bool },
 }
 
-/// What becomes of messages.
+/// Handles received messages.
 struct Ear {
     voice: Voice,
     autopilot: Option<Autopilot>,
@@ -90,7 +90,7 @@ impl Mavlink {
 }
 
 impl Mavlink {
-    /// Judges what is held if nothing has come behind it for a while.
+    /// Reads held bytes as they are after a pause.
     fn end_of_burst(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
         if self.pause.is_now(now) {
             let Mavlink { decoder, ear, .. } = self;
@@ -143,7 +143,7 @@ impl Ear {
             return;
         };
         if [COMPONENT, voice::COMPONENT].contains(&header.component) {
-            // Our own words, on a line that is looped back.
+            // Our own messages, on a line that is looped back.
             return;
         }
         if !is_hil(id) {
@@ -195,7 +195,7 @@ impl Ear {
         }
     }
 
-    /// Takes the first autopilot for the one at the other end.
+    /// Records a heartbeat; the first autopilot becomes the other side.
     fn beat(&mut self, header: &Header, beat: &heartbeat::Repr, now: i64) {
         if beat.autopilot == NO_AUTOPILOT || beat.kind == GROUND_STATION {
             return;
@@ -228,8 +228,8 @@ impl Ear {
     }
 }
 
-/// Whether a message of this id is between simulator and autopilot, and nobody else's: HIL_STATE, HIL_CONTROLS,
-/// HIL_RC_INPUTS_RAW, HIL_ACTUATOR_CONTROLS, HIL_SENSOR, HIL_GPS, HIL_OPTICAL_FLOW, HIL_STATE_QUATERNION.
+/// Whether a message of this id concerns only simulator and autopilot: HIL_STATE, HIL_CONTROLS, HIL_RC_INPUTS_RAW,
+/// HIL_ACTUATOR_CONTROLS, HIL_SENSOR, HIL_GPS, HIL_OPTICAL_FLOW, HIL_STATE_QUATERNION.
 const fn is_hil(id: u32) -> bool {
     matches!(id, 90..=93 | 107 | 113..=115)
 }

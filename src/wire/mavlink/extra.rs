@@ -1,7 +1,7 @@
-//! Messages beside HIL_SENSOR, each on request.
+//! Optional messages beside HIL_SENSOR.
 //!
-//! They repeat the newest readings or tell the truth, 50 times a second of scene time: each goes out at the
-//! first tick of any sensor at or after its turn. To add one: its variant, name and line of help, and its arm in
+//! They repeat the newest readings or give the truth, 50 times a second of scene time: each goes out at the first
+//! tick of any sensor at or after its due time. To add one: its variant, name and line of help, and its arm in
 //! `Sender::message`.
 
 use super::{MICROTESLA_A_GAUSS, Readings};
@@ -16,14 +16,14 @@ use ratetable_protocols::mavlink::{
 /// How often each is sent.
 const RATE_HZ: i64 = 50;
 
-/// A message that `mavlink` sends if it is asked to.
+/// An optional message of `mavlink`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extra {
     /// The true attitude, angular rate and specific force.
     HilStateQuaternion,
-    /// The true attitude and angular rate, as an autopilot tells its own.
+    /// The true attitude and angular rate, in the message an autopilot uses for its own.
     AttitudeQuaternion,
-    /// The readings, as an autopilot tells those of its own sensors.
+    /// The readings, in the message an autopilot uses for its own sensors.
     HighresImu,
     /// The readings in counts.
     RawImu,
@@ -32,7 +32,7 @@ pub enum Extra {
 }
 
 impl Extra {
-    /// Every one.
+    /// Every extra message.
     pub const ALL: [Extra; 5] = [
         Extra::HilStateQuaternion,
         Extra::AttitudeQuaternion,
@@ -41,7 +41,7 @@ impl Extra {
         Extra::ScaledImu2,
     ];
 
-    /// As MAVLink's definitions and a scene spell it.
+    /// Its name in MAVLink's definitions and in a scene.
     pub const fn name(self) -> &'static str {
         ["HIL_STATE_QUATERNION", "ATTITUDE_QUATERNION", "HIGHRES_IMU", "RAW_IMU", "SCALED_IMU2"]
             [self as usize]
@@ -52,7 +52,7 @@ impl Extra {
         Self::ALL.into_iter().find(|extra| extra.name() == name)
     }
 
-    /// Whether it tells the truth, which a controller that is to find it out must not hear.
+    /// Whether it carries the truth, which must not reach a controller that estimates it.
     pub const fn is_truth(self) -> bool {
         matches!(self, Extra::HilStateQuaternion | Extra::AttitudeQuaternion)
     }
@@ -63,13 +63,13 @@ impl Extra {
 pub struct Extras(u8);
 
 impl Extras {
-    /// With one more.
+    /// This set with one more.
     #[must_use]
     pub const fn with(self, extra: Extra) -> Extras {
         Extras(self.0 | 1 << extra as u8)
     }
 
-    /// Those in it.
+    /// The messages in it.
     pub fn iter(self) -> impl Iterator<Item = Extra> {
         Extra::ALL.into_iter().filter(move |extra| self.0 >> *extra as u8 & 1 == 1)
     }
@@ -80,7 +80,7 @@ impl Extras {
 pub(super) struct Sender {
     pub extra: Extra,
     next: SimTime,
-    /// Bit i: the sensor of kind i ticked since the message before.
+    /// The sensor kinds that ticked since the previous message.
     fresh: Kinds,
 }
 
@@ -89,7 +89,7 @@ impl Sender {
         Sender { extra, next: SimTime::ZERO, fresh: Kinds::NONE }
     }
 
-    /// Takes note of which sensors ticked, and says whether it is its turn.
+    /// Records which sensors ticked, and says whether the message is due.
     pub(super) fn is_due(&mut self, t: SimTime, ticked: Kinds) -> bool {
         let every = NANOS / RATE_HZ;
         self.fresh |= ticked;
@@ -100,7 +100,7 @@ impl Sender {
         due
     }
 
-    /// What it says now.
+    /// Its present content.
     pub(super) fn message(&mut self, truth: &Truth, readings: &Readings<'_>) -> Message {
         let time_usec = truth.t.0 as u64 / 1000;
         let time_boot_ms = (time_usec / 1000) as u32;
@@ -168,7 +168,7 @@ fn fields(fresh: Kinds, temperature: bool) -> u16 {
 /// `HIGHRES_IMU_UPDATED_TEMPERATURE`.
 const TEMPERATURE: u16 = 1 << 12;
 
-/// The nearest whole number of 16 bits; what is beyond them is the last of them.
+/// Rounds to 16 bits and clips what is out of range.
 fn nearest(x: f64) -> i16 {
     libm::round(x) as i16
 }

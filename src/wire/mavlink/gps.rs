@@ -7,7 +7,8 @@ use ratetable_protocols::mavlink::{Message, hil_gps};
 /// A fix in three dimensions.
 const THREE_D: u8 = 3;
 
-/// The message of a fix: WGS 84, velocity along north, east and down, accuracies in cm as PX4 reads `eph` and `epv`.
+/// The message of a fix: WGS 84, velocity along north, east and down, accuracies in cm, which is how PX4 reads
+/// `eph` and `epv`.
 pub(super) fn message(t: SimTime, fix: &Fix, claims: &Claims) -> Message {
     let [north, east, down] = fix.velocity.v.to_array();
     let course = libm::atan2(east, north).to_degrees().rem_euclid(360.0);

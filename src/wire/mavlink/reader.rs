@@ -1,5 +1,6 @@
-//! `mavlink`, versions 1 and 2: HIL_SENSOR as simulators send it, HIGHRES_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 and RAW_IMU as autopilots
-//! send what their own sensors read; one sample for each sensor that a message says is new.
+//! `mavlink`, versions 1 and 2: HIL_SENSOR from simulators; HIGHRES_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 and
+//! RAW_IMU from autopilots, with readings of their own sensors. Gives one sample for each sensor that a message
+//! marks as new.
 
 use super::damage::Stretches;
 use crate::earth::STANDARD_GRAVITY;
@@ -28,17 +29,17 @@ pub(super) fn ground_station(seq: u8) -> Vec<u8> {
 pub(super) struct Reader {
     decoder: Decoder,
     senders: Senders,
-    /// The beginning of a recording, until it is judged whether it has stamps.
+    /// The start of a recording, until it is known whether it has stamps.
     unjudged: Option<Vec<u8>>,
 }
 
 impl Reader {
-    /// For a recording, which may be a ground station's log.
+    /// A reader for a recording, which may be a ground station's log.
     pub(super) fn recorded() -> Reader {
         Reader { unjudged: Some(Vec::new()), ..Reader::default() }
     }
 
-    /// Reads what was held of a recording as what it turns out to be.
+    /// Decides what kind of recording it is, and reads the held bytes accordingly.
     fn judge(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         let Some(held) = self.unjudged.take() else { return };
         if log::has_stamps(&held) {
@@ -78,7 +79,7 @@ impl samples::Reader for Reader {
     }
 }
 
-/// Who is heard, by system and component: several may share a link.
+/// The senders heard, by system and component: several may share a link.
 #[derive(Default)]
 struct Senders {
     all: BTreeMap<[u8; 2], Sender>,
@@ -90,9 +91,9 @@ struct Senders {
 #[derive(Default)]
 struct Sender {
     losses: Losses,
-    /// The numbers of packets that could not be checked, since the last that could.
+    /// The sequence numbers of unchecked packets since the last checked one.
     unchecked: Vec<u8>,
-    /// How many damaged stretches there were at its last packet.
+    /// The number of damaged stretches at its last packet.
     stretches: u64,
 }
 
@@ -121,7 +122,7 @@ impl Senders {
         }
     }
 
-    /// Takes a packet's number in; how many of its sender are lost so far.
+    /// Records a packet's sequence number; returns how many of its sender's packets are lost so far.
     fn number(&mut self, received: &Received, counts: &mut Counts) -> u64 {
         let Received { header: Header { seq, system, component, .. }, len, skipped, checked, .. } = *received;
         self.stretches.end(skipped, if self.shortest == 0 { len } else { self.shortest });
@@ -144,11 +145,11 @@ impl Senders {
 }
 
 impl Sender {
-    /// A longer gap is rather a packet that was overtaken.
+    /// A longer gap more likely means that a packet was overtaken.
     const LONGEST_GAP: u8 = 239;
 
-    /// Takes in the number of a packet that was checked, after those that were not and lie between it and the last
-    /// that was: they fill the gap, and a wrong number among them opens none.
+    /// Records the number of a checked packet. Unchecked packets between it and the last checked one fill the gap;
+    /// a wrong number among them opens no gap.
     fn number(&mut self, seq: u8, counts: &mut Counts) {
         let gap = self.last().map_or(0, |last| seq.wrapping_sub(last).wrapping_sub(1));
         if gap < Sender::LONGEST_GAP
@@ -173,14 +174,14 @@ impl Sender {
     }
 }
 
-/// The bits of the barometer in HIL_SENSOR; the temperature may be another sensor's.
+/// The barometer's bits in HIL_SENSOR; the temperature may be that of another sensor.
 const ABSOLUTE: u32 = hil_sensor::PRESSURE & !hil_sensor::TEMPERATURE;
 
-/// What a message with readings says.
+/// The content of a message with readings.
 struct Inertial {
     source: Source,
     t: Option<SimTime>,
-    /// Each reading that is new, and what it says, where the message tells the unit.
+    /// Each new reading, with its value where the message gives the unit.
     fresh: [Option<(SensorKind, Option<Sensed>)>; 5],
 }
 
@@ -238,7 +239,7 @@ impl Inertial {
     }
 }
 
-/// Body axes in so many of our units.
+/// Body axes, from units of `unit`.
 fn triad(kind: SensorKind, values: [f32; 3], unit: f64) -> (SensorKind, Option<Sensed>) {
     (kind, Sensed::triad(values, unit))
 }
@@ -247,8 +248,8 @@ fn pressure(kind: SensorKind, hectopascals: f32) -> (SensorKind, Option<Sensed>)
     (kind, Sensed::Pressure(f64::from(hectopascals) * PASCALS_A_HECTOPASCAL).known())
 }
 
-/// Gyro, accel and mag of a message in counts, and what a count of each is; without a mask it has the first two, and a
-/// field of exactly nothing is a magnetometer that is not there.
+/// Gyro, accel and mag of a message in counts; `units` is the size of a count of each. Without a mask the message
+/// has the first two, and a field of exactly zero means that there is no magnetometer.
 fn counts(values: [[i16; 3]; 3], units: Option<[f64; 3]>) -> [Option<(SensorKind, Option<Sensed>)>; 5] {
     let present = |kind: SensorKind| kind != SensorKind::Mag || values[2] != [0; 3];
     let reading = |kind: SensorKind| {
@@ -259,7 +260,7 @@ fn counts(values: [[i16; 3]; 3], units: Option<[f64; 3]>) -> [Option<(SensorKind
     [gyro, accel, mag, None, None]
 }
 
-/// µs in ns, where that can be said.
+/// µs to ns; `None` if it does not fit.
 fn micros(us: u64) -> Option<i64> {
     i64::try_from(us).ok()?.checked_mul(1000)
 }

@@ -1,4 +1,4 @@
-//! What is sent on request, and in whose name.
+//! Optional messages, and their sender.
 
 use super::*;
 use crate::earth::STANDARD_GRAVITY;
@@ -9,7 +9,7 @@ use crate::wire::dialogue::Peer;
 use crate::wire::tests::{ACCEL_COUNT, GYRO_COUNT, NOISY, flown, plan, setup};
 use crate::wire::{Controller, Options, Protocol, check};
 
-/// Every packet of a plan for `mavlink` with these options and a controller of that system.
+/// Every packet of a plan for `mavlink` with these options and a controller with that system id.
 fn play(plan: &Plan, options: Options, system: Option<u8>) -> Vec<Packet> {
     let peer = Peer { system, ..Peer::default() };
     let mut encoder = Mavlink::new(&Setup { options, peer, ..setup(plan, None) });
@@ -40,7 +40,7 @@ fn mavlink_speaks_as_the_system_it_found_in_the_version_it_was_asked_for() {
                 );
                 sensors += usize::from(matches!(message, Some(Message::HilSensor(_))));
             });
-            // HIL_SENSOR of MAVLink 1 is never cut, and has no extension field.
+            // HIL_SENSOR of MAVLink 1 is never truncated, and has no extension field.
             if version == Version::V1 && !packet.carries.is_empty() {
                 assert_eq!(packet.bytes().len(), 6 + 64 + 2);
             }
@@ -138,7 +138,7 @@ fn px4_is_not_told_the_truth() {
     }
 }
 
-/// A vehicle that flies north-east and climbs: what HIL_GPS says is the receiver's reading, at its ticks and no others.
+/// A vehicle flies north-east and climbs: HIL_GPS carries the receiver's reading, only at its ticks.
 #[test]
 fn a_receivers_fixes_go_out_at_its_ticks() {
     let scene = "duration = \"2 s\"\n\

@@ -1,5 +1,5 @@
-//! `mip`: inertial packets back to readings, a sample of each sensor in every packet, new or held. The time is that of
-//! whichever field of theirs has one; ours have none.
+//! `mip`: inertial packets to readings, a sample of each sensor in every packet, new or held. The time comes from
+//! whichever field carries one; our packets carry none.
 
 use crate::earth::STANDARD_GRAVITY;
 use crate::sensor::SensorKind;

@@ -1,4 +1,4 @@
-//! `mpu`: the answer packet, a firmware's estimate with the time of the sample that it rests on.
+//! `mpu`: the answer packet, a firmware's estimate with the time of its newest sample.
 
 use crate::geometry::Attitude;
 use crate::time::SimTime;
@@ -44,7 +44,7 @@ impl Dialogue for Answers {
     }
 }
 
-/// The time whose microseconds are `t_us` modulo 2³² and which is nearest to `near`, but not before the beginning.
+/// The time whose microseconds are `t_us` modulo 2³² and which is nearest to `near`, but not negative.
 pub(super) fn unwrapped(t_us: u32, near: SimTime) -> SimTime {
     let near_us = near.0 / 1000;
     let ahead = t_us.wrapping_sub(near_us as u32) as i32;

@@ -1,4 +1,4 @@
-//! `mpu`: registers back to readings, by the scales of the newest config packet.
+//! `mpu`: registers to readings, by the scales of the newest config packet.
 
 use super::dialogue::unwrapped;
 use crate::earth::STANDARD_GRAVITY;
@@ -32,7 +32,7 @@ impl samples::Reader for Reader {
             counts.packets += 1;
             counts.number(losses, seq);
             if let Packet::Attitude(_) = packet {
-                // Its time is an echo of the other direction's.
+                // Its time echoes the other direction's.
                 return counts.foreign("attitude");
             }
             let first = SimTime(i64::from(t_us) * 1000);
@@ -75,7 +75,7 @@ fn accel(config: &Option<config::Repr>, counts: [i16; 3]) -> Option<[f64; 3]> {
     Some(counts.map(|count| f64::from(count) * unit))
 }
 
-/// The field on the axes of the gyro's chip, µT; not where the magnetometer says that it overflowed.
+/// The field on the axes of the gyro's chip, µT; `None` if the magnetometer reports an overflow.
 fn field(config: &Option<config::Repr>, seen: &mag::Repr) -> Option<[f64; 3]> {
     let asa = config.as_ref()?.asa;
     let unit = |axis: usize| registers::mag_ut_per_lsb(asa[axis], seen.st2 & ST2_16_BIT != 0);

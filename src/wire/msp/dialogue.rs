@@ -1,7 +1,7 @@
-//! `msp`: INAV's attitude out of its answers, each an estimate at its arrival.
+//! `msp`: INAV's attitude from its answers, each an estimate at its arrival.
 //!
-//! Until it answers, INAV is asked who it is and for its attitude twice a second. It hears the stream once it answers
-//! a simulator message; it answers every one.
+//! Until it answers, INAV is asked for its identity and attitude twice a second. It hears the stream once it
+//! answers a simulator message; it answers every one.
 
 use crate::geometry::{Attitude, Euler};
 use crate::wire::Controller;
@@ -9,9 +9,9 @@ use crate::wire::dialogue::{Dialogue, Estimate, Pause, Said, Stage, Stamp};
 use ratetable_protocols::Error;
 use ratetable_protocols::msp::{self, Decoder, Direction, MAX_LEN, Message, Received, fc_variant, simulator};
 
-/// Between two questions, ns.
+/// Time between two requests, ns.
 const ASK_EVERY: i64 = 500_000_000;
-/// How long nobody answers before that is said, ns.
+/// Time without an answer before a notice, ns.
 const PATIENCE: i64 = 5_000_000_000;
 
 /// One link to a flight controller that speaks MSP.
@@ -19,14 +19,14 @@ pub(super) struct Inav {
     decoder: Decoder,
     damaged: u64,
     stage: Stage,
-    /// When it was first asked, and when it is next.
+    /// When the first request went out, and when the next is due.
     asked: Option<i64>,
     ask_at: i64,
     pause: Pause,
     told: Told,
 }
 
-/// What the user has been told.
+/// The notices already given.
 #[derive(Default)]
 struct Told {
     silence: bool,
@@ -35,7 +35,7 @@ struct Told {
 }
 
 impl Inav {
-    /// With a controller, it has to answer before the scene starts; else it is played to at once.
+    /// With a controller, it must answer before the scene starts; without one, samples start at once.
     pub(super) fn new(controller: Option<Controller>) -> Inav {
         let stage = if controller.is_some() { Stage::Silent } else { Stage::Ready };
         Inav {
@@ -51,7 +51,7 @@ impl Inav {
 
     fn take(&mut self, received: Result<Received, Error>, say: &mut dyn FnMut(Said<'_>)) {
         match received {
-            // Our own, on a link that echoes.
+            // Our own message, on a link that echoes.
             Ok(Received { direction: Direction::Request, .. }) => {}
             Ok(received) => {
                 self.stage = self.stage.max(stage_after(&received));
@@ -104,7 +104,7 @@ impl Dialogue for Inav {
     }
 }
 
-/// Any answer says that somebody is there, one to a simulator message that it is heard.
+/// Any answer shows that somebody is there; an answer to a simulator message shows that it hears the stream.
 fn stage_after(received: &Received) -> Stage {
     match received.message {
         Some(Message::SimulatorReply(_)) => Stage::Ready,
@@ -112,7 +112,7 @@ fn stage_after(received: &Received) -> Stage {
     }
 }
 
-/// What an answer means.
+/// Handles an answer.
 fn judge(received: &Received, told: &mut Told, say: &mut dyn FnMut(Said<'_>)) {
     match received.message {
         Some(Message::SimulatorReply(reply)) => {
@@ -142,7 +142,7 @@ fn judge(received: &Received, told: &mut Told, say: &mut dyn FnMut(Said<'_>)) {
     }
 }
 
-/// From INAV's angles in degrees, pitch nose down positive.
+/// Converts INAV's angles in degrees; its pitch is positive nose down.
 fn estimate(roll: f64, pitch: f64, yaw: f64) -> Said<'static> {
     let [roll, pitch, yaw] = [roll, -pitch, yaw].map(f64::to_radians);
     let attitude = Attitude::from_quat(Euler { roll, pitch, yaw }.to_quat());
@@ -156,7 +156,7 @@ mod tests {
     use proptest::prelude::*;
     use ratetable_protocols::msp::{attitude, simulator_reply};
 
-    /// What is said in answer to a message, or of itself at a time.
+    /// What is sent in answer to a message, or unasked at a time.
     #[derive(Debug, PartialEq)]
     enum Heard {
         Estimate([f64; 3]),

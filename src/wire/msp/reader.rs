@@ -1,5 +1,5 @@
-//! `msp`: the simulator message back to readings, a sample of each sensor in every packet, new or held. It says no
-//! time, and of the field only the direction, so that one has no value.
+//! `msp`: the simulator message to readings, a sample of each sensor in every packet, new or held. It carries no
+//! time, and only the direction of the field, so that sample has no value.
 
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::{Body, Vector};
@@ -45,7 +45,7 @@ fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut dyn F
     };
     sample(SensorKind::Gyro, Some(body(seen.gyro, 1f64.to_radians() / GYRO_SCALE)));
     sample(SensorKind::Accel, Some(body(seen.accel, STANDARD_GRAVITY / ACCEL_SCALE)));
-    // A field of exactly nothing is a magnetometer that is not there.
+    // A field of exactly zero means that there is no magnetometer.
     if seen.mag != simulator::Repr::default().mag {
         sample(SensorKind::Mag, None);
     }
@@ -57,7 +57,7 @@ fn body([x, y, z]: [i16; 3], unit: f64) -> Vector<Body> {
     Vector::new(x, -y, -z)
 }
 
-/// Who is there?
+/// The request for the identity.
 pub(super) fn question() -> Vec<u8> {
     let mut buffer = [0; MAX_LEN];
     let len = encode(&Message::question(api_version::COMMAND), &mut buffer).unwrap_or(0);

@@ -1,18 +1,18 @@
-//! Whether a recording of MAVLink is a ground station's log, and what its stamps say.
+//! Whether a MAVLink recording is a ground station's log, and what its stamps say.
 
 use super::SimTime;
 use ratetable_protocols::mavlink::{Decoder, Received};
 
-/// As many bytes of a recording as are looked at.
+/// How many bytes of a recording are examined.
 pub(in crate::wire) const JUDGED: usize = 16_384;
 
-/// As many stamped packets as make a log.
+/// How many stamped packets identify a log.
 const ENOUGH: u64 = 2;
 
 /// A longer time between two stamps is a step of the logging clock, ns.
 const LONGEST: i64 = 3_600_000_000_000;
 
-/// Whether the bytes read better with a stamp in front of each packet than without.
+/// Whether the bytes decode better with a stamp before each packet than without.
 pub(in crate::wire) fn has_stamps(bytes: &[u8]) -> bool {
     let (plain, stamped) = (read(Decoder::new(), bytes), read(Decoder::stamped(), bytes));
     stamped.packets >= ENOUGH && stamped.gaps < plain.gaps && 2 * stamped.dated > stamped.packets
@@ -20,9 +20,9 @@ pub(in crate::wire) fn has_stamps(bytes: &[u8]) -> bool {
 
 #[derive(Default)]
 struct Read {
-    /// Packets whose checksum is right.
+    /// Packets with a correct checksum.
     packets: u64,
-    /// Those whose stamp is a time of this century or the one before.
+    /// Those whose stamp is a time of this century or the previous one.
     dated: u64,
     /// Stretches of bytes that are no packet.
     gaps: u64,
@@ -41,7 +41,7 @@ fn read(mut decoder: Decoder, bytes: &[u8]) -> Read {
     read
 }
 
-/// A stamp as a time since 1970; `None` beyond the year 2112, which is no stamp.
+/// A stamp as time since 1970; `None` after the year 2112, which is no stamp.
 pub(in crate::wire) fn time(us: u64) -> Option<SimTime> {
     (us >> 52 == 0).then(|| SimTime(us as i64 * 1000))
 }
@@ -50,9 +50,9 @@ pub(in crate::wire) fn time(us: u64) -> Option<SimTime> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stamps {
     newest: Option<SimTime>,
-    /// From stamp to stamp in all, steps left out, ns.
+    /// Total time from stamp to stamp without steps, ns.
     pub span_ns: i64,
-    /// How often the next was earlier, or more than an hour later.
+    /// How often a stamp was earlier than the previous one, or more than an hour later.
     pub steps: u64,
 }
 

@@ -1,4 +1,4 @@
-//! What every encoder makes comes back sample for sample; damage, gaps and any bytes at all.
+//! The output of every encoder comes back sample for sample; damage, gaps and arbitrary bytes.
 
 use super::*;
 use crate::scene::Plan;
@@ -14,7 +14,7 @@ use ratetable_protocols::mavlink::{
 };
 use std::sync::OnceLock;
 
-/// Sensors at rates that have nothing to do with one another, each axis and sensor with values of its own.
+/// Sensors at unrelated rates, each axis and sensor with its own values.
 const MIXED: &str = r#"
 seed = 5
 [[motion]]
@@ -43,7 +43,7 @@ fn assumed(plan: &Plan) -> Assumed {
     Assumed { axes: plan.axes, mounts, recorded: false }
 }
 
-/// Everything that these bytes hold, fed in pieces of so many bytes.
+/// Everything in these bytes, fed in pieces of `piece` bytes.
 fn read(mut samples: Samples, bytes: &[u8], piece: usize) -> (Vec<Sample>, Counts) {
     let mut all = Vec::new();
     bytes.chunks(piece.max(1)).for_each(|piece| samples.feed(piece, |sample| all.push(sample)));
@@ -55,7 +55,8 @@ fn bytes(packets: &[Packet]) -> Vec<u8> {
     packets.iter().flat_map(|packet| packet.bytes().to_vec()).collect()
 }
 
-/// How far a value may be from the reading that was sent: half a count, the rounding of an `f32`, or nothing.
+/// The allowed difference between a value and the reading that was sent: half a count, the rounding of an `f32`, or
+/// nothing.
 fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
     let count = [1f64.to_radians() / 16.4, crate::earth::STANDARD_GRAVITY / 2048.0, 0.15][kind as usize];
     let msp = [1f64.to_radians() / 16.0, 1e-3 * crate::earth::STANDARD_GRAVITY, 0.0][kind as usize];
@@ -69,7 +70,7 @@ fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
     }
 }
 
-/// The first thing in which the samples differ from the readings that were sent.
+/// The first difference between the samples and the readings that were sent.
 fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample]) -> Option<String> {
     for kind in SensorKind::TRIADS {
         let sent: Vec<_> = sent.iter().filter(|(_, reading)| reading.kind == kind).collect();
@@ -109,11 +110,11 @@ fn every_sample_comes_back_with_its_time_and_value() {
     for plan in scenes.iter().chain(&turned).map(|text| plan(text)) {
         for protocol in Protocol::ALL {
             let (packets, readings) = play(&plan, protocol, None);
-            // With MAVLink a sensor's sample leaves at the next tick of the gyro: compare where they tick together.
+            // In MAVLink a sensor's sample leaves at the next tick of the gyro: compare where both tick.
             if protocol == Protocol::Mavlink && plan.sensors[1].rate != plan.sensors[0].rate {
                 continue;
             }
-            // These tell every sensor in every packet, at most 100 times a second: compare where all are new.
+            // These carry every sensor in every packet, at most 100 times a second: compare where all are new.
             let tells_all = matches!(protocol, Protocol::Msp | Protocol::Vectornav | Protocol::Mip);
             if tells_all && plan.sensors[2].rate != Rate::hz(100) {
                 continue;
@@ -130,7 +131,7 @@ fn every_sample_comes_back_with_its_time_and_value() {
     }
 }
 
-/// Negative control: a mistake in axes, sign or scale does not pass for a round trip.
+/// Negative control: a round trip with a mistake in axes, sign or scale fails.
 #[test]
 fn a_swapped_axis_is_noticed() {
     let plan = plan(TOGETHER);
@@ -145,7 +146,7 @@ fn a_swapped_axis_is_noticed() {
             |[x, y, z]| [1.01 * x, 1.01 * y, 1.01 * z],
         ];
         for change in changes {
-            // The field in `msp` has no value to be wrong.
+            // The field in `msp` has no value that could be wrong.
             let has_value = |kind: &SensorKind| (protocol, *kind) != (Protocol::Msp, SensorKind::Mag);
             for kind in SensorKind::TRIADS.into_iter().filter(has_value) {
                 let changed = |sample: &Sample| match sample.value {
@@ -295,8 +296,7 @@ fn a_damaged_packet_costs_itself_and_is_counted() {
                 let (samples, counts) = read(Samples::new(*protocol), &damaged.concat(), 4096);
                 let cost = packets[hurt].carries.len();
                 assert_eq!(samples.len(), whole.len() - cost, "{protocol:?} packet {hurt} bit {bit}");
-                // A message of an id that is not known cannot be checked; it is counted by that id, and fills the gap
-                // that it leaves.
+                // A message with an unknown id cannot be checked; it counts under that id, and fills its gap.
                 let unknown = counts.foreign.keys().any(|name| name.starts_with("message"));
                 let damaged = counts.damaged >= 1 && counts.lost == 1;
                 assert!(damaged != unknown, "{protocol:?} {counts:?}");
@@ -308,7 +308,7 @@ fn a_damaged_packet_costs_itself_and_is_counted() {
     }
 }
 
-/// A MAVLink 2 packet of any id with one byte of payload, its checksum by this last byte.
+/// A MAVLink 2 packet of any id with one byte of payload; `extra` is the last byte of its checksum input.
 fn frame(seq: u8, id: u32, extra: u8) -> Vec<u8> {
     let [a, b, c, _] = id.to_le_bytes();
     let mut frame = vec![0xfd, 1, 0, 0, seq, 1, 1, a, b, c, 7];
@@ -321,7 +321,7 @@ fn frame(seq: u8, id: u32, extra: u8) -> Vec<u8> {
     frame
 }
 
-/// VFR_HUD, which is not read here and whose checksum byte is 20, and an id of nobody's.
+/// VFR_HUD, which is not read here and whose checksum byte is 20, and an unassigned id.
 const HUD: (u32, u8) = (74, 20);
 const NOBODY: (u32, u8) = (50_000, 99);
 
@@ -334,7 +334,7 @@ fn a_wrong_number_is_believed_of_no_packet() {
                 .collect();
             frames[51][4] ^= 1 << bit;
             let (_, counts) = read(Samples::new(Protocol::Mavlink), &frames.concat(), 17);
-            // Where it cannot be checked it is a packet like its like, and the number that it should have is missing.
+            // Where it cannot be checked it counts as a normal packet, and its correct number is missing.
             let (packets, damaged, unchecked) = if id == HUD.0 { (99, 1, 0) } else { (100, 0, 50) };
             assert_eq!(
                 (counts.packets, counts.damaged, counts.lost),
@@ -361,7 +361,7 @@ fn packets_that_cannot_be_checked_fill_the_gap_that_they_make() {
             "{left_out:?}"
         );
     }
-    // Of a sender of which nothing can be checked nothing is known.
+    // Nothing is known of a sender with no checkable packet.
     let alone: Vec<u8> =
         [1u8, 2, 9, 200].into_iter().flat_map(|seq| frame(seq, NOBODY.0, NOBODY.1)).collect();
     let (_, counts) = read(Samples::new(Protocol::Mavlink), &alone, 64);
@@ -376,7 +376,7 @@ fn damaged_packets_side_by_side_are_counted_by_their_numbers() {
         let (_, counts) = read(Samples::new(Protocol::Mavlink), &frames.concat(), 64);
         assert_eq!((counts.damaged, counts.lost), (hurt.len() as u64, hurt.len() as u64), "{hurt:?}");
     }
-    // One damaged and three that never came are one damaged; bytes between whole packets hide none.
+    // One damaged packet and three that never came count as one damaged; bytes between whole packets hide none.
     let mut frames: Vec<Vec<u8>> = (0..100u8).map(|seq| frame(seq, HUD.0, HUD.1)).collect();
     frames[50][11] ^= 4;
     frames.drain(51..54);
@@ -408,12 +408,12 @@ fn a_log_is_recognised_by_its_content_and_its_stamps_are_the_arrivals() {
     assert_eq!(counts.stamps.map(|stamps| (stamps.span_ns, stamps.steps)), Some((149 * 10_000_000, 0)));
     let arrived: Vec<_> = samples.iter().map(|sample| sample.packet.arrived.unwrap().0).collect();
     assert!(arrived.is_sorted() && arrived[0] >= 1_700_000_000_000_000_000);
-    // From the middle of a packet to the middle of one.
+    // From the middle of one packet to the middle of another.
     let cut = &records.concat()[20..];
     let (_, counts) = of(&cut[..cut.len() - 9]);
     assert_eq!((counts.packets, counts.damaged, counts.lost, counts.joined_midway), (148, 0, 0, 1));
     assert!(counts.stamps.is_some());
-    // Damage in packets, in stamps, and stamps that step.
+    // Damaged packets, damaged stamps, and stamps that step.
     let mut hurt = records.clone();
     [20, 21, 90].into_iter().for_each(|at: usize| hurt[at][8 + 12] ^= 1);
     hurt[40][0] = 0xff;
@@ -425,7 +425,7 @@ fn a_log_is_recognised_by_its_content_and_its_stamps_are_the_arrivals() {
         .for_each(|record| record[..8].copy_from_slice(&1_600_000_000_000_000_u64.to_be_bytes()));
     let (_, counts) = of(&stepped.concat());
     assert_eq!(counts.stamps.map(|stamps| (stamps.span_ns, stamps.steps)), Some((69 * 10_000_000, 1)));
-    // Negative controls: the same packets without stamps, and a live stream of a log.
+    // Negative controls: the same packets without stamps, and a log read as a live stream.
     let (_, counts) = of(&bytes(&packets[..150]));
     assert_eq!((counts.packets, counts.damaged, counts.stamps), (150, 0, None));
     let (_, counts) = read(Samples::new(Protocol::Mavlink), &records.concat(), 64);
@@ -477,7 +477,7 @@ fn damage_to_a_packet_without_a_number_costs_it_and_is_counted() {
                 let (samples, counts) = read(Samples::new(protocol), &damaged.concat(), 4096);
                 let cost = if packets[hurt].carries.is_empty() { 0 } else { 3 };
                 assert_eq!(samples.len(), whole.len() - cost, "{protocol:?} packet {hurt} bit {bit}");
-                // A frame of `msp` that goes the other way is a whole one that means something else.
+                // A frame of `msp` in the other direction is whole but means something else.
                 let turned = protocol == Protocol::Msp && counts.foreign.contains_key("reply 8223");
                 assert_eq!(counts.damaged, u64::from(!turned), "{protocol:?} packet {hurt} bit {bit}");
                 assert_eq!(counts.lost, 0);
@@ -504,7 +504,7 @@ fn time_goes_on_where_the_packets_clock_wraps() {
     let plan = plan("duration = \"4 s\"\n[gyro]\nrate = \"10 Hz\"\n");
     let mut encoder = crate::wire::encoder(Protocol::Mpu, &crate::wire::tests::setup(&plan, None));
     let (mut packets, mut times) = (Vec::new(), Vec::new());
-    // From 1 s before the 32 bits of µs wrap, at an uptime beyond half of them.
+    // From 1 s before the 32 bits of µs wrap, at an uptime beyond half their range.
     for k in 0..400i64 {
         let t = SimTime(4_294_000_000_000 + k * 100_000_000);
         times.push(Some(t));
@@ -595,7 +595,7 @@ proptest! {
     }
 }
 
-/// Pressure comes back by every protocol that has it; of a fix that it came, and when.
+/// Pressure comes back in every protocol that carries it; of a fix, only its arrival and time.
 #[test]
 fn pressures_come_back_and_a_fix_is_counted() {
     let scene = format!(

@@ -1,4 +1,4 @@
-//! `csv` and `jsonl`: a line a sample. Names and keys beyond ours are left alone, so that the lines of other
+//! `csv` and `jsonl`: one sample for each line. It ignores names and keys beyond ours, so that lines of other
 //! programs read too.
 
 use crate::geometry::Axes;
@@ -8,7 +8,7 @@ use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// No line of ours is longer than a packet; those of others may be.
+/// None of our lines is longer than a packet; those of other programs may be.
 const LONGEST: usize = 1024;
 
 pub(super) struct Reader {
@@ -19,8 +19,8 @@ pub(super) struct Reader {
     overlong: bool,
 }
 
-/// A line of either kind: three components, the pressure of a barometer, or something else of which only the time is
-/// read, such as a receiver's fix.
+/// A line of either format: three components, the pressure of a barometer, or something else of which only the time
+/// is read, such as a receiver's fix.
 #[derive(serde::Deserialize)]
 struct Line<'l> {
     t_ns: i64,
@@ -37,7 +37,7 @@ impl Line<'_> {
         SensorKind::from_name(&self.sensor)
     }
 
-    /// Whether it has what a line of its sensor has.
+    /// Whether it has all values of its sensor.
     fn is_whole(&self) -> bool {
         match self.kind().map(SensorKind::shape) {
             Some(Shape::Pressure) => self.pa.is_some(),
@@ -62,7 +62,7 @@ impl Reader {
         Reader { axes, source, parse, held: Vec::with_capacity(LONGEST), overlong: false }
     }
 
-    /// Judges the line that is held.
+    /// Reads the held line.
     fn close(&mut self, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
         let overlong = std::mem::take(&mut self.overlong);
         let line = std::str::from_utf8(&self.held).ok().filter(|_| !overlong).map(str::trim);
@@ -74,7 +74,7 @@ impl Reader {
                     None => counts.foreign(&line.sensor),
                 }
             }
-            // The line of names, blank lines and remarks.
+            // The header line, blank lines and comments.
             Some((line, None)) if line.starts_with("t_ns,") => counts.packets += 1,
             Some((line, None)) if line.is_empty() || line.starts_with('#') => {}
             _ => counts.refuse(),
@@ -115,7 +115,7 @@ impl samples::Reader for Reader {
     }
 }
 
-/// `t_ns,sensor,x,y,z`, and columns after those are not read; of a barometer the pressure alone.
+/// `t_ns,sensor,x,y,z`; later columns are ignored. For a barometer only the pressure.
 fn csv(line: &str) -> Option<Line<'_>> {
     let mut cells = line.split(',').map(str::trim);
     let t_ns = cells.next()?.parse().ok()?;

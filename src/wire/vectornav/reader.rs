@@ -1,4 +1,4 @@
-//! `vectornav`: IMU packets back to readings, a sample of each sensor in every packet, new or held.
+//! `vectornav`: IMU packets to readings, a sample of each sensor in every packet, new or held.
 
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
@@ -35,7 +35,7 @@ fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut dyn FnM
     };
     sample(SensorKind::Gyro, seen.gyro, 1.0);
     sample(SensorKind::Accel, seen.accel, 1.0);
-    // A field of exactly nothing is a magnetometer that is not there.
+    // A field of exactly zero means that there is no magnetometer.
     if seen.mag != [0.0; 3] {
         sample(SensorKind::Mag, seen.mag, MICROTESLA_A_GAUSS);
     }

@@ -1,33 +1,33 @@
-//! Asks an autopilot for its attitude often enough to be scored by.
+//! Requests an autopilot's attitude often enough to score it.
 
 use super::{Autopilot, Said, Voice};
 use crate::time::NANOS;
 use ratetable_protocols::mavlink::{Message, attitude, attitude_quaternion, command_ack, command_long};
 
-/// Asked for: 50 Hz.
+/// The requested interval: 50 Hz.
 const INTERVAL_US: f32 = 20_000.0;
-/// It flows at half of that.
+/// At half of that, messages flow well enough.
 const ENOUGH_HZ: u32 = 25;
-/// Between two questions, ns; one is under way at a time, so that an answer belongs to it.
+/// Time between two requests, ns. Only one is open at a time, so that an answer belongs to it.
 const PAUSE: i64 = NANOS / 2;
 
-/// Which messages are wanted, and how far each is.
+/// The wanted messages and their state.
 #[derive(Debug)]
 pub(super) struct Asking {
     wanted: [Wanted; 2],
-    /// The one asked for last, and when.
+    /// The last request, and its time.
     last: Option<(usize, i64)>,
 }
 
 #[derive(Debug)]
 struct Wanted {
     id: u32,
-    /// It was granted, or refused for good.
+    /// The request was granted, or refused for good.
     settled: bool,
     flow: Flow,
 }
 
-/// Messages that came in the second since `since`, and in the second before.
+/// Messages received in the second since `since`, and in the second before.
 #[derive(Debug, Default)]
 struct Flow {
     since: i64,
@@ -43,7 +43,7 @@ impl Default for Asking {
 }
 
 impl Asking {
-    /// Takes note that a message of that id came.
+    /// Counts a received message of that id.
     pub(super) fn hear(&mut self, id: u32, now: i64) {
         if let Some(wanted) = self.wanted.iter_mut().find(|wanted| wanted.id == id) {
             wanted.flow.at(now);
@@ -51,7 +51,7 @@ impl Asking {
         }
     }
 
-    /// Takes the answer to a command.
+    /// Handles the answer to a command.
     pub(super) fn answered(&mut self, command: u16, result: u8) {
         let for_now = [command_ack::TEMPORARILY_REJECTED, command_ack::IN_PROGRESS].contains(&result);
         if command == command_long::SET_MESSAGE_INTERVAL
@@ -62,7 +62,7 @@ impl Asking {
         }
     }
 
-    /// Asks for the next message that does not flow.
+    /// Requests the next message that does not flow.
     pub(super) fn tick(
         &mut self,
         now: i64,

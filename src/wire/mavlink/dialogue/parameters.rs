@@ -1,17 +1,17 @@
-//! Reads whole-number parameters of a PX4 by name, asking again for those that do not come.
+//! Reads integer parameters of a PX4 by name, and retransmits requests that stay unanswered.
 
 use super::{Autopilot, Said, Voice};
 use crate::time::NANOS;
 use ratetable_protocols::mavlink::{Message, param_id, param_name, param_request_read, param_value};
 
-/// Between two requests of whatever name, ns: the stream of samples is to stay even.
+/// Time between two requests of any name, ns: the stream of samples stays even.
 const BETWEEN: i64 = NANOS / 50;
-/// Until a name is asked for again, ns.
+/// Time until a retransmission for the same name, ns.
 const RESEND: i64 = NANOS / 2;
-/// So often a name is asked for: a controller says nothing of one that it does not have.
+/// The most requests for one name: a controller does not answer for a parameter that it does not have.
 const TIMES: u32 = 5;
 
-/// The parameters asked for and what is known of each.
+/// The requested parameters and what is known of each.
 #[derive(Debug, Default)]
 pub(super) struct Parameters {
     wanted: Vec<Wanted>,
@@ -27,19 +27,19 @@ struct Wanted {
 }
 
 impl Parameters {
-    /// Asks for one more, if it is not asked for already.
+    /// Requests one more parameter, once.
     pub(super) fn want(&mut self, name: &'static str) {
         if !self.wanted.iter().any(|wanted| wanted.name == name) {
             self.wanted.push(Wanted { name, value: None, asked: 0, asked_at: 0 });
         }
     }
 
-    /// Forgets everything: the controller has booted anew.
+    /// Forgets everything, after a reboot of the controller.
     pub(super) fn forget(&mut self) {
         *self = Parameters::default();
     }
 
-    /// Takes a value in. PX4 puts the bits of a whole number in the float of the message.
+    /// Stores a value. PX4 puts the bits of an integer into the float of the message.
     pub(super) fn take(&mut self, message: &param_value::Repr) {
         let name = param_name(&message.param_id);
         if let Some(wanted) = self.wanted.iter_mut().find(|wanted| wanted.name == name) {
@@ -50,12 +50,12 @@ impl Parameters {
         }
     }
 
-    /// What is known of one.
+    /// The value of a parameter, if known.
     pub(super) fn get(&self, name: &str) -> Option<i32> {
         self.wanted.iter().find(|wanted| wanted.name == name)?.value
     }
 
-    /// Whether nothing more is expected of one: it came, or was asked for in vain.
+    /// Whether no more answers are expected for a parameter: it arrived, or its requests ran out.
     pub(super) fn settled(&self, name: &str, now: i64) -> bool {
         let given_up = |wanted: &Wanted| wanted.asked >= TIMES && now - wanted.asked_at > RESEND;
         let wanted = self.wanted.iter().find(|wanted| wanted.name == name);

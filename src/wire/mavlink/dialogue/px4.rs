@@ -1,8 +1,8 @@
-//! PX4 on its board, in HITL: woken, waited for, its parameters read, and told on when it does not hear.
+//! PX4 on its board, in HITL: wakes it, waits for it, reads its parameters, and gives notice when it does not hear.
 //!
-//! PX4 takes HIL_SENSOR only in HIL mode and only on links of more than 5000 B/s (`Mavlink::set_hil_enabled`); a rate
-//! of 0 stands for a twentieth of the baud rate. Everything else about such a link looks healthy, so what matters is
-//! read from its parameters. In HIL mode it has no other sensors: an attitude means that it hears.
+//! PX4 reads HIL_SENSOR only in HIL mode and only on links of more than 5000 B/s (`Mavlink::set_hil_enabled`). A
+//! rate of 0 means a twentieth of the baud rate. Everything else on a slower link looks healthy, so its parameters
+//! decide. In HIL mode it has no other sensors: an attitude means that it hears.
 
 use super::parameters::Parameters;
 use super::steady::Steady;
@@ -12,19 +12,19 @@ use crate::time::NANOS;
 use crate::wire::Protocol;
 use crate::wire::mavlink::HARDWARE_IN_THE_LOOP;
 
-/// The slowest link that PX4 does not take samples from, B/s.
+/// The fastest link on which PX4 ignores samples, B/s.
 const DEAF_RATE: i32 = 5000;
-/// What PX4's guides recommend for a companion's link.
+/// What PX4's guides recommend for the link of a companion computer.
 const GOOD_BAUD: u32 = 921_600;
-/// Without an attitude for so long after the first samples, ns, a slow link is to blame: over USB, which goes by no
-/// parameter, attitude has come by then.
+/// If no attitude comes within this time after the first samples, ns, a slow link is to blame. Over USB, which
+/// ignores these parameters, attitude has come by then.
 const PATIENCE: i64 = 4 * NANOS;
-/// And for so long, it does not hear, ns.
+/// If none comes within this time, it does not hear, ns.
 const DEAF: i64 = 10 * NANOS;
-/// Heartbeats come once a second: after a gap of so long it was booted anew, ns.
+/// Heartbeats come once a second: a gap of this length means a reboot, ns.
 const REBOOTED: i64 = 4 * NANOS;
 
-/// Its serial ports by the number that `MAV_x_CONFIG` gives them: name, parameter of the baud rate.
+/// Its serial ports by their number in `MAV_x_CONFIG`: name, parameter of the baud rate.
 const PORTS: [(i32, &str, &str); 4] = [
     (101, "TELEM 1", "SER_TEL1_BAUD"),
     (102, "TELEM 2", "SER_TEL2_BAUD"),
@@ -39,12 +39,12 @@ const INSTANCES: [(&str, &str, &str); 3] = [
 ];
 const HITL: &str = "SYS_HITL";
 
-/// What is known of the controller, and what of it was said.
+/// What is known of the controller, and which notices were given.
 #[derive(Debug, Default)]
 pub(super) struct Px4 {
     pub(super) parameters: Parameters,
     steady: Steady,
-    /// When it was first ticked, last woken, first heard of since it booted, and last heard of.
+    /// When it was first ticked, last woken, first heard since its boot, and last heard.
     started_at: Option<i64>,
     woken: Option<(i64, u8)>,
     fed_since: Option<i64>,
@@ -55,7 +55,7 @@ pub(super) struct Px4 {
     given: Given,
 }
 
-/// Which notices were given since it booted.
+/// The notices given since it booted.
 #[derive(Debug, Default)]
 struct Given {
     nobody: bool,
@@ -75,7 +75,7 @@ impl Px4 {
         }
     }
 
-    /// Takes a heartbeat; true where it begins anew, because it has just booted.
+    /// Records a heartbeat; true if it has just booted.
     pub(super) fn beat(&mut self, now: i64) -> bool {
         let last = self.beat_at.replace(now);
         let booted = last.is_none_or(|last| now - last > REBOOTED);
@@ -92,12 +92,12 @@ impl Px4 {
         booted
     }
 
-    /// Takes note that it does something with the samples.
+    /// Records that it reacts to the samples.
     pub(super) fn react(&mut self) {
         self.reacted = true;
     }
 
-    /// Takes its estimate.
+    /// Records its estimate.
     pub(super) fn attitude(&mut self, attitude: Attitude, now: i64) {
         self.reacted = true;
         self.settled |= self.steady.take(attitude, now);
@@ -121,11 +121,11 @@ impl Px4 {
         }
         self.parameters.tick(now, autopilot, voice, say);
         self.judge(now, autopilot, now - fed_since, say);
-        // With sensors of its own its attitude says nothing of ours.
+        // With its own sensors its attitude says nothing about ours.
         self.ready |= self.settled && self.parameters.get(HITL).is_none_or(|hitl| hitl == 1);
     }
 
-    /// Beats like a ground station: USB ports of PX4 wait for one before they speak MAVLink.
+    /// Sends a ground station's heartbeat: PX4's USB ports wait for one before they speak MAVLink.
     fn wake(&mut self, now: i64, started: i64, say: &mut dyn FnMut(Said<'_>)) {
         let seq = self.woken.map_or(0, |(_, seq)| seq.wrapping_add(1));
         if self.woken.is_none_or(|(at, _)| now - at >= NANOS) {
@@ -140,7 +140,7 @@ impl Px4 {
         }
     }
 
-    /// Says what is known to be wrong.
+    /// Gives notice of known problems.
     fn judge(&mut self, now: i64, autopilot: &Autopilot, fed: i64, say: &mut dyn FnMut(Said<'_>)) {
         let hitl = self.parameters.get(HITL);
         if let Some(hitl) = hitl.filter(|hitl| *hitl != 1) {
@@ -184,7 +184,7 @@ impl Px4 {
         PORTS.into_iter().find(|port| port.0 == number)
     }
 
-    /// What is to be changed of each instance that is too slow to be listened to.
+    /// The changes needed for each instance whose link is too slow.
     fn slow_links(&self) -> Vec<String> {
         let slow = |(name, config, rate): (&str, &'static str, &'static str)| {
             if self.parameters.get(config) == Some(0) {
@@ -194,7 +194,7 @@ impl Px4 {
             let bytes = self.parameters.get(rate)?;
             let port = self.port(config);
             let baud = port.and_then(|(_, _, key)| Some((key, self.parameters.get(key)?)));
-            // 0 is found out by PX4 itself.
+            // PX4 detects the baud rate itself where it is 0.
             let slow_baud = baud.filter(|(_, baud)| (1..=20 * DEAF_RATE).contains(baud));
             let here = port.map_or(String::new(), |(_, port, _)| {
                 format!(" ({name} is {port}; USB goes by none of them)")
@@ -216,8 +216,8 @@ impl Px4 {
 }
 
 impl Parameters {
-    /// The causes of a controller that beats but does not hear, in order; those that its parameters rule out are not
-    /// among them.
+    /// The possible causes when a controller sends heartbeats but does not hear, in order, without those that its
+    /// parameters rule out.
     fn why_deaf(&self) -> String {
         let hitl = (self.get(HITL) != Some(1)).then_some("SYS_HITL is not 1");
         let causes = [
@@ -238,7 +238,7 @@ impl Parameters {
     }
 }
 
-/// Gives a notice that was not given yet.
+/// Gives a notice once.
 fn once(said: &mut bool, say: &mut dyn FnMut(Said<'_>), notice: impl FnOnce() -> String) {
     if !*said {
         *said = true;

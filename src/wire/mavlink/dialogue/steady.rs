@@ -5,27 +5,27 @@ use crate::time::NANOS;
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// How far roll and pitch may spread, rad: 0.2°.
+/// Allowed spread of roll and pitch, rad: 0.2°.
 const SPREAD: f64 = 0.2 * std::f64::consts::PI / 180.0;
-/// For how long they have to keep to it, ns.
+/// How long they must stay within it, ns.
 const FOR: i64 = 2 * NANOS;
-/// A pause after which nothing is known of what lies between, ns.
+/// A gap after which what happened between is unknown, ns.
 const GAP: i64 = NANOS / 2;
 
-/// Attitudes nearer to one another than this are kept as one, so that no sender fills the memory, ns.
+/// Attitudes closer in time than this are merged, so that no sender fills the memory, ns.
 const GRAIN: i64 = NANOS / 100;
 
 /// The attitudes of the last two seconds.
 ///
-/// What is compared is the direction of down in body axes, which heading does not move: near level its x is −pitch and
-/// its y is roll, and it is as good at any other attitude.
+/// Only the direction of down in body axes is compared, which heading does not change. Near level its x is −pitch
+/// and its y is roll; it works at any other attitude too.
 #[derive(Debug, Default)]
 pub(super) struct Steady {
     grains: VecDeque<Grain>,
     newest: i64,
 }
 
-/// The least and greatest of attitudes that came together, the first of them then.
+/// The least and greatest values of merged attitudes; the first came at this time.
 #[derive(Clone, Copy, Debug)]
 struct Grain {
     t: i64,
@@ -34,7 +34,7 @@ struct Grain {
 }
 
 impl Steady {
-    /// Takes the next attitude and says whether all of the last two seconds keep together.
+    /// Adds an attitude; true if all of the last two seconds stay within the spread.
     pub(super) fn take(&mut self, attitude: Attitude, now: i64) -> bool {
         let down = attitude.inverse().apply(Vector::<Nav>::new(0.0, 0.0, 1.0)).v;
         if now - self.newest > GAP {
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use crate::geometry::Euler;
 
-    /// When the first of these attitudes, each 20 ms after the other, is steady; s.
+    /// When the first of these attitudes, 20 ms apart, is steady; s.
     fn steady_at(attitude: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
         let mut steady = Steady::default();
         (0..500).map(|k| f64::from(k) * 0.02).find(|&t| {
@@ -95,7 +95,7 @@ mod tests {
             |k: i64| Attitude::from_quat(glam::DQuat::from_rotation_x(if k == 15_000 { 0.01 } else { 0.0 }));
         let settled = (0..40_000).filter(|k| steady.take(shaking(*k), k * NANOS / 10_000)).count();
         assert!(steady.grains.len() <= 202, "{}", steady.grains.len());
-        // Of 4 s, the 2 s after the one that is off, at 1.5 s, are not steady; a grain is 10 ms.
+        // Of 4 s, the 2 s after the outlier at 1.5 s are not steady; a grain is 10 ms.
         assert!((4_800..=5_000).contains(&settled), "{settled}");
     }
 

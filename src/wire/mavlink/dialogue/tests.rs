@@ -1,4 +1,4 @@
-//! Whole conversations in memory, against a PX4 of a page.
+//! Whole conversations in memory, against a minimal PX4.
 
 use super::*;
 use crate::time::NANOS;
@@ -38,7 +38,7 @@ fn euler(time_boot_ms: u32, [roll, pitch, yaw]: [f32; 3]) -> Message {
     Message::Attitude(attitude::Repr { time_boot_ms, roll, pitch, yaw, ..Default::default() })
 }
 
-/// What was said, in order, as far as it is of interest after the call.
+/// The messages of a conversation, in order, as far as they matter after the call.
 #[derive(Clone, Debug, PartialEq)]
 enum Word {
     Estimate(Estimate),
@@ -60,14 +60,14 @@ impl Word {
     }
 }
 
-/// What is said to these bytes.
+/// The response to these bytes.
 fn hear(dialogue: &mut Mavlink, bytes: &[u8], now: i64) -> Vec<Word> {
     let mut words = Vec::new();
     dialogue.hear(bytes, now, &mut |said| words.push(Word::of(&said)));
     words
 }
 
-/// What is said without being asked, and no passing on.
+/// What is said without a request, without forwarded messages.
 fn said(words: Vec<Word>) -> Vec<Word> {
     words.into_iter().filter(|word| !matches!(word, Word::Pass(_))).collect()
 }
@@ -79,19 +79,19 @@ fn message(bytes: &[u8]) -> (Header, Message) {
     (received.header, received.message.unwrap())
 }
 
-/// A PX4 of a page: it beats once it is woken, and has an attitude if it hears samples.
+/// A minimal PX4: it sends heartbeats once woken, and has an attitude if it hears samples.
 struct Board {
     system: u8,
     parameters: BTreeMap<&'static str, i32>,
-    /// Whether this link is USB, which goes by no MAV_x parameter.
+    /// Whether this link is USB, which ignores MAV_x parameters.
     usb: bool,
     /// Whether the estimator starts at all.
     estimates: bool,
-    /// Roll in degrees so many seconds after the first sample.
+    /// Roll in degrees as a function of the seconds since the first sample.
     roll: fn(f64) -> f64,
-    /// Requests that get lost, of each parameter.
+    /// Lost requests for each parameter.
     loses: u32,
-    /// From when on it beats, and until when: it boots.
+    /// When it is off, before a reboot.
     off: std::ops::Range<f64>,
     awake: bool,
     fed_since: Option<i64>,
@@ -102,7 +102,7 @@ struct Board {
 }
 
 impl Board {
-    /// As its guide has it for HITL.
+    /// A board with the settings of its HITL guide.
     fn good() -> Board {
         let parameters = [
             ("SYS_HITL", 1),
@@ -151,7 +151,7 @@ impl Board {
         out.extend(packet(header, message));
     }
 
-    /// Takes what was said to it.
+    /// Handles bytes sent to it.
     fn take(&mut self, bytes: &[u8], out: &mut Vec<u8>) {
         let mut decoder = self.decoder.clone();
         decoder.feed(bytes, |received| match received.unwrap().message.unwrap() {
@@ -186,7 +186,7 @@ impl Board {
         self.decoder = decoder;
     }
 
-    /// What it says in this step.
+    /// What it sends in this step.
     fn step(&mut self, now: i64, fed: bool, out: &mut Vec<u8>) {
         if !self.awake || self.off.contains(&(now as f64 * 1e-9)) {
             self.fed_since = None;
@@ -214,7 +214,7 @@ impl Board {
     }
 }
 
-/// What came of a conversation.
+/// The record of a conversation.
 #[derive(Default)]
 struct Talk {
     notices: Vec<(f64, String)>,
@@ -235,7 +235,7 @@ impl Talk {
     }
 }
 
-/// Talks with a board for so many seconds.
+/// Talks with a board for this many seconds.
 fn talk(mut board: Board, seconds: i64) -> Talk {
     let mut dialogue = Mavlink::new(Some(Controller::Px4));
     let mut talk = Talk::default();
@@ -277,7 +277,7 @@ fn px4_is_woken_fed_and_played_to_once_its_estimator_is_steady() {
     assert_eq!(talk.system, Some(7));
     let (still, ready) = (talk.when(Stage::Still).unwrap(), talk.when(Stage::Ready).unwrap());
     assert!(talk.stages[0] == (0.0, Stage::Silent) && (0.5..=1.5).contains(&still), "{:?}", talk.stages);
-    // 20°·e^(−3t) is within 0.2° of its end from t = 1.54 s on, and has to be so for 2 s.
+    // 20°·e^(−3t) is within 0.2° of its end from t = 1.54 s, and must stay so for 2 s.
     assert!((still + 3.5..still + 3.65).contains(&ready), "{:?}", talk.stages);
     let late = talk.estimates.iter().filter(|t| **t >= 10.0).count();
     assert!((490..=510).contains(&late), "{late} of 500: 50 Hz, and each estimate once");
@@ -536,7 +536,7 @@ fn only_the_autopilot_is_listened_to() {
 #[test]
 fn a_ground_station_sees_every_message_but_the_simulators() {
     let mut dialogue = Mavlink::new(None);
-    // An id that is not known here, from somewhere else.
+    // An unknown id from another sender.
     let unknown = vec![0xfd, 2, 0, 0, 9, 5, 1, 0xff, 0xff, 0, 7, 8, 0x12, 0x34];
     let time = from(1, 1, &Message::SystemTime(system_time::Repr { time_unix_usec: 1, time_boot_ms: 2 }));
     let shown = [from(1, 1, &beat(12, 0)), unknown, time, from(255, 190, &beat(NO_AUTOPILOT, 0))];
@@ -565,7 +565,7 @@ fn noise_that_looks_like_a_long_packet_does_not_hide_what_follows() {
     assert_eq!(dialogue.peer().system, Some(6), "a tenth of a second later");
     assert_eq!(after[0], Word::Pass(from(6, 1, &beat(12, 0))));
     assert_eq!(dialogue.damaged(), 1, "the noise");
-    // Packets that come in two pieces with less than that between them are whole.
+    // A packet in two pieces with less than a pause between them is whole.
     let bytes = from(6, 1, &actuators(1));
     assert_eq!(hear(&mut dialogue, &bytes[..9], NANOS), []);
     (0..=9).for_each(|k| dialogue.tick(NANOS + k * STEP, &mut |_| {}));

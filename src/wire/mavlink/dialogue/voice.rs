@@ -1,13 +1,13 @@
-//! What the conversation says itself, beside the stream of samples.
+//! Messages that the conversation sends beside the stream of samples.
 
 use super::Said;
 use crate::wire::mavlink::SYSTEM;
 use ratetable_protocols::mavlink::{self, Header, Message, Version};
 
-/// Another component than that of the samples, so that each has a sequence of its own without gaps.
+/// A different component from that of the samples, so that each has its own sequence without gaps.
 pub(super) const COMPONENT: u8 = 52;
 
-/// Packs messages in the name of the vehicle's system.
+/// Packs messages as a component of the vehicle's system.
 #[derive(Debug)]
 pub(super) struct Voice {
     version: Version,
@@ -22,7 +22,7 @@ impl Default for Voice {
 }
 
 impl Voice {
-    /// Speaks from now on as one of that system, in the version in which it was heard.
+    /// Sends from now on as part of that system, in the version in which it was heard.
     pub(super) fn adopt(&mut self, version: Version, system: u8) {
         (self.version, self.system) = (version, system);
     }
@@ -30,7 +30,7 @@ impl Voice {
     pub(super) fn say(&mut self, message: &Message, say: &mut dyn FnMut(Said<'_>)) {
         let Voice { version, system, seq } = *self;
         let mut buffer = [0; mavlink::MAX_LEN];
-        // MAX_LEN holds every message, and MAVLink 1 has those that are said here.
+        // MAX_LEN holds every message, and MAVLink 1 has all messages sent here.
         if let Ok(len) =
             mavlink::encode(&Header { version, seq, system, component: COMPONENT }, message, &mut buffer)
         {
