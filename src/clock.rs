@@ -1,4 +1,4 @@
-//! Wall and virtual clocks: the only place that knows the time or sleeps until it.
+//! Wall and virtual clocks: the only place that reads the time or sleeps.
 //!
 //! ```
 //! use ratetable::clock::{Clock, VirtualClock};
@@ -18,27 +18,27 @@ pub use margin::{Margin, Policy};
 pub use precise::Precise;
 pub use wall::WallClock;
 
-/// A clock that can be waited on, in nanoseconds from a start of its own; it never goes back.
+/// A clock to wait on, in nanoseconds from its own start; it never goes back.
 pub trait Clock: Send {
     /// Now, ns.
     fn now(&self) -> i64;
 
-    /// Gives the processor away until `t`; wakes as late as the system makes it. At once when `t` has passed.
+    /// Sleeps until `t`; wakes as late as the system makes it. Returns at once if `t` has passed.
     fn sleep_until(&mut self, t: i64);
 
-    /// As [`Clock::sleep_until`], but another thread may end it early by unparking this one.
+    /// Like [`Clock::sleep_until`], but another thread may end it early by unparking this one.
     fn doze_until(&mut self, t: i64) {
         self.sleep_until(t);
     }
 
-    /// Keeps the processor until `t`; at once when it has passed.
+    /// Spins until `t`; returns at once if it has passed.
     fn spin_until(&mut self, t: i64) {
         while self.now() < t {
             std::hint::spin_loop();
         }
     }
 
-    /// Returns at `t` or as soon after as it can; at once when `t` has passed.
+    /// Returns at `t` or as soon after as possible; at once if `t` has passed.
     fn wait_until(&mut self, t: i64) {
         self.sleep_until(t);
     }
@@ -48,16 +48,16 @@ pub trait Clock: Send {
 #[derive(Clone, Debug, Default)]
 pub struct VirtualClock {
     now: i64,
-    /// How long after its time each sleep ends, in turn and over again, ns.
+    /// The lateness of each sleep, in turn and repeated, ns.
     pub wakes_late: Vec<i64>,
-    /// Sleeps so far.
+    /// Number of sleeps so far.
     pub sleeps: usize,
     /// Time spent spinning so far, ns.
     pub spun: i64,
 }
 
 impl VirtualClock {
-    /// That wakes these times late, in turn.
+    /// A clock whose sleeps end this late, in turn.
     pub fn waking_late(late: impl Into<Vec<i64>>) -> VirtualClock {
         VirtualClock { wakes_late: late.into(), ..VirtualClock::default() }
     }

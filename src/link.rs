@@ -1,13 +1,13 @@
 //! Where bytes go out and come back: serial ports, pseudo terminals, sockets, files.
 //!
-//! A link knows nothing of what is in a packet, nor of when it is due. It is opened by its
-//! [`Address`] on a tokio runtime, waits for its [`peer`](Link::peer), and gives away its two
-//! halves: a [`Sender`] for the pacing thread, which never waits, allocates or locks, and a
-//! [`Receiver`] for a task.
+//! A link does not know what is in a packet or when it is due. [`Address`] opens it on a tokio runtime. It waits
+//! for its
+//! [`peer`](Link::peer) and gives away two halves: a [`Sender`] for the pacing thread, which never waits, allocates or
+//! locks, and a [`Receiver`] for a task.
 //!
-//! Every kind of link is one file of the same shape: its line in the table, the address it reads,
-//! how it is opened, whom it waits for at the start and at the end, then its two halves.
-//! [`SCHEMES`] lists them. A link that reaches beyond this machine does so only because an address was given.
+//! Every kind of link is one file of the same shape: its line in the table, its address, how it opens, whom it
+//! waits for at the start and at the end, then its two halves. [`SCHEMES`] lists them. A link reaches beyond this
+//! machine only if the user gives an address.
 //!
 //! ```
 //! use ratetable::link::Address;
@@ -75,19 +75,18 @@ pub struct Link {
     receiver: Option<Receiver>,
 }
 
-/// What is left of a link when its two halves have been taken.
+/// What remains of a link after its two halves are taken.
 enum Kind {
     Pty(pty::Pty),
     Serial(serial::Serial),
     Tcp(tcp::Tcp),
     Udp(udp::Udp),
-    /// Somebody is always there, and nothing is waited for.
+    /// Somebody is always there; no wait.
     Plain,
 }
 
 impl Link {
-    /// Opens a link, ready to stream; a port that is missing or busy, or a peer that refuses, is an
-    /// error at once.
+    /// Opens a link, ready to stream. A port that is missing or busy, or a peer that refuses, is an error at once.
     ///
     /// # Panics
     /// Outside a tokio runtime with I/O and time enabled.
@@ -108,22 +107,21 @@ impl Link {
         Self { name: name.to_string(), notices: Vec::new(), kind, sender: Some(sender), receiver }
     }
 
-    /// What one connects to: `/dev/pts/4`, the path a pty is published at, `127.0.0.1:4560` with
-    /// the port that was picked, the serial port, the file, `-`.
+    /// What to connect to: `/dev/pts/4`, the path where a pty is published, `127.0.0.1:4560` with the chosen port,
+    /// the serial port, the file, `-`.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What the user should know of how the link was opened, a sentence each.
+    /// What the user should know about how the link opened, one sentence each.
     pub fn notices(&self) -> &[String] {
         &self.notices
     }
 
-    /// Waits until somebody is there: on a pty, 100 ms after a reader has opened it; on `tcpin`,
-    /// until a peer connects; on `udpin`, until a first datagram, which can still be received.
-    /// Others are ready at once.
+    /// Waits until somebody is there: on a pty, 100 ms after a reader has opened it; on `tcpin`, until a peer
+    /// connects; on `udpin`, until a first datagram, which remains to be received. Other links are ready at once.
     ///
-    /// It may be given up at any time and called again.
+    /// The wait may be cancelled at any time and called again.
     pub async fn peer(&mut self) -> Result<(), LinkError> {
         let came: io::Result<()> = match &mut self.kind {
             Kind::Pty(link) => {
@@ -141,8 +139,8 @@ impl Link {
         })
     }
 
-    /// Whether somebody is there now, as far as the link can know: a pty's reader, or a peer that
-    /// has come, or a serial port that is plugged in. Files and standard output always have somebody.
+    /// Whether somebody is there now, as far as the link can know: a pty's reader, a connected peer, or a
+    /// plugged-in serial port. Files and standard output always have somebody.
     pub fn peer_is_present(&self) -> bool {
         match &self.kind {
             Kind::Pty(link) => link.present(),
@@ -153,11 +151,11 @@ impl Link {
         }
     }
 
-    /// Whether somebody was there and nobody is now, where the [`Sender`] does not say so itself
-    /// ([`Sent::Gone`]): a pty without its reader is only `Full`, as another may come, and a serial port that was
-    /// pulled out only `Away`.
+    /// Whether somebody was there and nobody is now, where the [`Sender`] does not report it itself
+    /// ([`Sent::Gone`]): a pty without its reader is only `Full`, because another may come, and an unplugged serial
+    /// port only `Away`.
     ///
-    /// It may read through `/proc`: ask now and then, not with every packet.
+    /// It may read `/proc`: call it now and then, not with every packet.
     pub fn peer_has_left(&self) -> bool {
         match &self.kind {
             Kind::Pty(link) => link.has_left(),
@@ -166,13 +164,13 @@ impl Link {
         }
     }
 
-    /// Whether it is a port that was pulled out and is looked for by its path, as long as somebody receives.
+    /// Whether it is an unplugged port; the link looks for its path while somebody receives.
     pub fn is_unplugged(&self) -> bool {
         matches!(&self.kind, Kind::Serial(link) if !link.present())
     }
 
-    /// Bytes that were sent and that the other side does not have yet, where the system tells: in the buffers of a
-    /// serial port's driver, of a TCP connection, of a pty (as far as they show) and of the UART it plays.
+    /// Sent bytes that the other side does not have yet, where the system tells: in the buffers of a serial driver,
+    /// of a TCP connection, of a pty (the visible part) and of the UART it emulates.
     pub fn queued(&self) -> Option<usize> {
         match &self.kind {
             Kind::Pty(link) => link.queued(),
@@ -185,20 +183,20 @@ impl Link {
     /// The sending side, for one thread.
     ///
     /// # Panics
-    /// When it was taken before: two senders would mix their packets.
+    /// When it is taken a second time: two senders would mix their packets.
     pub fn sender(&mut self) -> Sender {
         self.sender.take().expect("a link has one sender")
     }
 
-    /// The receiving side; `None` where nothing comes back, or when it was taken before.
+    /// The receiving side; `None` where nothing comes back, or when it was already taken.
     pub fn receiver(&mut self) -> Option<Receiver> {
         self.receiver.take()
     }
 
-    /// Closes the link after the other side has had up to a second to take what was sent.
+    /// Closes the link; gives the other side up to a second to read what was sent.
     ///
-    /// Drop the [`Sender`] (after [`Sender::finish`]) and the [`Receiver`] first. A link that is
-    /// dropped instead waits for nothing; a published path is removed either way.
+    /// First drop the [`Sender`] (after [`Sender::finish`]) and the [`Receiver`]. Dropping the link instead waits
+    /// for nothing. Either way removes a published path.
     pub async fn close(self) {
         match self.kind {
             Kind::Pty(link) => link.close().await,

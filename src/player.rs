@@ -1,7 +1,7 @@
-//! Turns a plan into readings in order of time, in blocks: the pure core that a live run and a dataset share.
+//! Turns a plan into readings in time order, in blocks: the pure core shared by live runs and datasets.
 //!
-//! No clock, no I/O, no threads. The truth is evaluated once a distinct tick; each sensor due then gets its
-//! error-free reading from it and makes its own from that. Where blocks begin changes nothing.
+//! No clock, no I/O, no threads. It evaluates the truth once for each distinct tick; each sensor due then gets its
+//! error-free reading from it and makes its own from that. Block boundaries do not change the result.
 //!
 //! ```
 //! use ratetable::{player::{BLOCK, Player}, scene::Plan, time::SimTime};
@@ -31,17 +31,17 @@ use crate::sensor::{
 };
 use crate::time::SimTime;
 
-/// How many distinct ticks a block holds unless told otherwise.
+/// The default number of distinct ticks in a block.
 pub const BLOCK: usize = 256;
 
 /// Everything due at one time: the truth and the readings, in the plan's order of sensors.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
-    /// When.
+    /// The time.
     pub t: SimTime,
-    /// The exact truth then.
+    /// The exact truth at that time.
     pub truth: &'a Truth,
-    /// One reading a sensor due, but for those that a fault withholds.
+    /// One reading for each due sensor, except those that a fault withholds.
     pub readings: &'a [Reading],
 }
 
@@ -87,13 +87,13 @@ pub struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    /// Plays `plan` from 0 up to, not including, `end`; after the scene's motions the vehicle holds.
-    /// `block` is how many distinct ticks are computed at a time (at least 1).
+    /// Plays `plan` from 0 up to, not including, `end`; after the scene's motions the vehicle holds. `block` is the
+    /// number of distinct ticks to compute at a time (at least 1).
     pub fn new(plan: &'a Plan, end: SimTime, block: usize) -> Player<'a> {
         Player::without(plan, end, block, &[])
     }
 
-    /// The same without the error terms called so.
+    /// The same without the error terms named in `left_out`.
     pub fn without(plan: &'a Plan, end: SimTime, block: usize, left_out: &[&str]) -> Player<'a> {
         let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
         let origin = plan.origin();
@@ -131,16 +131,16 @@ impl<'a> Player<'a> {
         !self.due.is_empty()
     }
 
-    /// Computes the next block and gives it as columns, a sensor at a time: the fastest way, for who needs no order
-    /// across sensors. `None` at the end.
+    /// Computes the next block and returns it as columns, one sensor at a time: the fastest way where no order
+    /// across sensors is needed. `None` at the end.
     pub fn play_columns(&mut self) -> Option<Columns<'_>> {
         self.next_block().then_some(Columns { truth: &self.truth, channels: &self.channels })
     }
 
-    /// Computes the next block and hands each of its moments to `each`, in order of time; false at the end.
+    /// Computes the next block and passes each of its moments to `each`, in time order; false at the end.
     ///
     /// # Errors
-    /// Whatever `each` returns stops the block and comes back.
+    /// An error of `each` stops the block and is returned.
     pub fn play_block<E>(&mut self, mut each: impl FnMut(Moment<'_>) -> Result<(), E>) -> Result<bool, E> {
         if !self.next_block() {
             return Ok(false);
@@ -163,7 +163,7 @@ impl<'a> Player<'a> {
     /// Plays to the end.
     ///
     /// # Errors
-    /// Whatever `each` returns stops the playing and comes back.
+    /// An error of `each` stops the playing and is returned.
     pub fn play<E>(&mut self, mut each: impl FnMut(Moment<'_>) -> Result<(), E>) -> Result<(), E> {
         while self.play_block(&mut each)? {}
         Ok(())
@@ -187,8 +187,8 @@ impl Channel {
         self.sensor.read(&mut self.block);
     }
 
-    /// Appends a sample's reading, written where it belongs: a triad fills a third of a reading, and copying all of it
-    /// was a tenth of a packet.
+    /// Appends a sample's reading, written in place: a triad fills a third of a reading, and copying all of it took
+    /// a tenth of the time for a packet.
     #[inline(always)]
     fn push_reading(&self, sensor: usize, i: usize, readings: &mut Vec<Reading>) {
         let Block { reading, truth, bias, .. } = &self.block;
@@ -214,7 +214,7 @@ impl Channel {
         }
     }
 
-    /// What a receiver says at a sample, which its block has as metres from the origin.
+    /// The fix of a receiver at a sample, from metres relative to the origin.
     fn position(&self, i: usize) -> Position {
         let displacement = Measured::<Vector<Nav>> {
             value: at(&self.block.reading, i),
@@ -230,13 +230,13 @@ impl Channel {
     }
 }
 
-/// The sample of three columns, in the frame that they are in.
+/// The sample of three columns, in their frame.
 fn at<F>(columns: &[Vec<f64>; 3], i: usize) -> Vector<F> {
     Vector::new(columns[0][i], columns[1][i], columns[2][i])
 }
 
-/// What an error-free sensor of this kind reads, in its unit; nothing of one that senses more than the truth of an
-/// instant.
+/// What an error-free sensor of this kind reads, in its unit; zero for a sensor that needs more than the truth of
+/// an instant.
 pub fn sensed(kind: SensorKind, truth: &Truth) -> Vector<Body> {
     match kind.row().senses {
         Senses::Rate => truth.rate,

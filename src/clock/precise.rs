@@ -2,13 +2,13 @@
 
 use super::{Clock, Margin, Policy};
 
-/// Awake for longer than this without a sleep, ns, it rests.
+/// After this long without a sleep, ns, it rests.
 const AWAKE: i64 = 20_000_000;
-/// For so long, ns: a tenth of its time, so that a thread that is too late to sleep, packet after packet, never meets
-/// the kernel's limit for real-time threads (95 % of a second, then a gap of 50 ms).
+/// Length of the rest, ns: a tenth of its time. A thread that is too late to sleep, packet after packet, then never
+/// reaches the kernel's limit for real-time threads (95 % of a second, then a gap of 50 ms).
 const REST: i64 = 2_000_000;
 
-/// A clock whose waits end on time as far as its sleeps allow.
+/// A clock whose waits end on time, as far as its sleeps allow.
 #[derive(Clone, Debug)]
 pub struct Precise<C> {
     clock: C,
@@ -18,18 +18,18 @@ pub struct Precise<C> {
 }
 
 impl<C: Clock> Precise<C> {
-    /// Over a clock whose sleeps end late.
+    /// Wraps a clock whose sleeps end late.
     pub fn new(clock: C, policy: Policy) -> Precise<C> {
         let slept = clock.now();
         Precise { clock, margin: Margin::new(policy), slept }
     }
 
-    /// The margin as it is now.
+    /// The present margin.
     pub fn margin(&self) -> Margin {
         self.margin
     }
 
-    /// The clock below.
+    /// The wrapped clock.
     pub fn inner(&self) -> &C {
         &self.clock
     }

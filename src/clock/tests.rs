@@ -2,7 +2,7 @@ use super::*;
 
 const PERIOD: i64 = 1_000_000;
 
-/// Waits for the ticks of `period` ns up to `ticks`, and gives back how late each wait ended.
+/// Waits for the ticks of `period` ns up to `ticks`, and returns how late each wait ended.
 fn waits<C: Clock>(clock: &mut C, period: i64, ticks: i64) -> Vec<i64> {
     (1..=ticks)
         .map(|k| {
@@ -36,7 +36,7 @@ fn a_wall_clock_never_wakes_early() {
 
 #[test]
 fn the_margin_comes_to_cover_all_but_one_wake_in_a_hundred() {
-    // Wakes 20.0 to 39.9 µs late, each as often as the other: the 99 % quantile is 39.8 µs.
+    // Wakes 20.0 to 39.9 µs late, all values equally often: the 99 % quantile is 39.8 µs.
     let late: Vec<_> = (0..200).map(|i| 20_000 + (i * 73 % 200) * 100).collect();
     let mut clock = Precise::new(VirtualClock::waking_late(late), Policy::Adaptive);
     waits(&mut clock, PERIOD, 5_000);
@@ -82,7 +82,7 @@ fn a_fixed_margin_learns_nothing() {
     assert_eq!(clock.margin().ns(), 40_000);
 }
 
-/// A clock on which every look takes a microsecond: a thread that works and never gets to sleep.
+/// A clock where every look takes a microsecond: a thread that works and never sleeps.
 #[derive(Default)]
 struct Busy {
     now: std::cell::Cell<i64>,

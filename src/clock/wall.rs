@@ -5,7 +5,7 @@ use rustix::thread::{ClockId, clock_nanosleep_absolute};
 use rustix::time::{Timespec, clock_gettime};
 use std::time::Duration;
 
-/// `CLOCK_MONOTONIC` from the moment it was started; its waits are bare absolute sleeps.
+/// `CLOCK_MONOTONIC` from its start; its waits are bare absolute sleeps.
 #[derive(Clone, Copy, Debug)]
 pub struct WallClock {
     start: i64,

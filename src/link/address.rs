@@ -6,37 +6,37 @@ use std::path::PathBuf;
 use super::baud::DEFAULT_BAUD;
 use super::endpoint::Endpoint;
 
-/// The address of a link, spelled as `pymavlink` and `rust-mavlink` spell theirs.
+/// The address of a link, spelled as in `pymavlink` and `rust-mavlink`.
 ///
-/// `pty[:PATH][,BAUD]`, `/dev/ttyACM0[,BAUD]`, `serial:PATH[,BAUD]`, `tcpin:[ADDR:]PORT`,
-/// `tcpout:ADDR:PORT`, `udpin:[ADDR:]PORT`, `udpout:ADDR:PORT`, `file:PATH`, and `-` for standard
-/// output. What [`Display`](fmt::Display) writes reads back to the same address.
+/// `pty[:PATH][,BAUD]`, `/dev/ttyACM0[,BAUD]`, `serial:PATH[,BAUD]`, `tcpin:[ADDR:]PORT`, `tcpout:ADDR:PORT`,
+/// `udpin:[ADDR:]PORT`, `udpout:ADDR:PORT`, `file:PATH`, and `-` for standard output. The output of
+/// [`Display`](fmt::Display) parses back to the same address.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Address {
-    /// A new pseudo terminal, published at `path` where one is given.
+    /// A new pseudo terminal, published at `path` if given.
     Pty {
-        /// Where a symbolic link to the terminal is made.
+        /// Where to make a symbolic link to the terminal.
         path: Option<PathBuf>,
-        /// The speed of the UART whose time it takes; without one, bytes arrive as fast as they are read.
+        /// The speed of the UART to emulate; without one, bytes arrive as fast as they are read.
         baud: Option<u32>,
     },
     /// A serial port, 8 data bits, no parity, one stop bit.
     Serial {
         /// The device.
         path: PathBuf,
-        /// Its speed; [`DEFAULT_BAUD`] where none was given.
+        /// Its speed; [`DEFAULT_BAUD`] if not given.
         baud: Option<u32>,
     },
-    /// A TCP socket that waits for one peer to connect, and turns all others away.
+    /// A TCP socket that accepts one peer and rejects all others.
     TcpIn(Endpoint),
     /// A TCP connection to a listening peer.
     TcpOut(Endpoint),
-    /// A UDP socket that answers its first sender.
+    /// A UDP socket that sends to whoever sends to it first.
     UdpIn(Endpoint),
-    /// A UDP socket that sends to one place.
+    /// A UDP socket that sends to one address.
     UdpOut(Endpoint),
-    /// A file; what it held is replaced.
+    /// A file; its previous content is replaced.
     File {
         /// The file.
         path: PathBuf,
@@ -46,7 +46,7 @@ pub enum Address {
 }
 
 impl Address {
-    /// The speed of a serial port, or of the UART that a pty plays; `None` for every other link.
+    /// The speed of a serial port, or of the UART that a pty emulates; `None` for every other link.
     pub fn baud(&self) -> Option<u32> {
         match self {
             Self::Pty { baud, .. } => *baud,
@@ -55,7 +55,7 @@ impl Address {
         }
     }
 
-    /// The same address, with `baud` for a serial port that was given no speed.
+    /// The same address, with `default` for a serial port without a speed.
     pub fn or_baud(mut self, default: u32) -> Self {
         if let Self::Serial { baud, .. } = &mut self {
             baud.get_or_insert(default);
@@ -63,7 +63,7 @@ impl Address {
         self
     }
 
-    /// The same address, a pty taking nobody's time.
+    /// The same address, without a speed for a pty.
     pub fn unpaced(mut self) -> Self {
         if let Self::Pty { baud, .. } = &mut self {
             *baud = None;
@@ -71,7 +71,7 @@ impl Address {
         self
     }
 
-    /// The same address at another speed, where it has one.
+    /// The same address at another speed, if it has one.
     pub fn at_baud(mut self, speed: u32) -> Self {
         if let Self::Serial { baud, .. } | Self::Pty { baud, .. } = &mut self {
             *baud = Some(speed);
@@ -79,7 +79,7 @@ impl Address {
         self
     }
 
-    /// Whether it carries a stream of bytes as they are written, and not datagrams or gathered blocks.
+    /// Whether bytes go out as a stream as they are written, not as datagrams or gathered blocks.
     pub fn is_stream(&self) -> bool {
         matches!(self, Self::Pty { .. } | Self::Serial { .. } | Self::TcpIn(_) | Self::TcpOut(_))
     }
@@ -113,7 +113,7 @@ impl fmt::Display for Address {
     }
 }
 
-/// A speed after an address.
+/// The speed after an address.
 fn comma(f: &mut fmt::Formatter<'_>, baud: Option<u32>) -> fmt::Result {
     baud.map_or(Ok(()), |baud| write!(f, ",{baud}"))
 }

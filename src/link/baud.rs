@@ -1,20 +1,20 @@
-//! Baud rates: their capacity, and how one is written after an address.
+//! Baud rates: their capacity, and their spelling after an address.
 
 use std::path::PathBuf;
 
 use super::problem::{self, Problem};
 
-/// The speed of a serial port that is given none: 921 600 baud.
+/// The speed of a serial port without a given one: 921 600 baud.
 pub const DEFAULT_BAUD: u32 = 921_600;
 
-/// The speeds that serial drivers of Linux know by name, from 9600 on (`asm-generic/termbits.h`); ports take
+/// The speeds that Linux serial drivers have names for, from 9600 up (`asm-generic/termbits.h`); ports accept
 /// others too.
 pub const STANDARD_BAUDS: &[u32] = &[
     9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_152_000,
     1_500_000, 2_000_000, 2_500_000, 3_000_000, 3_500_000, 4_000_000,
 ];
 
-/// Bits that a byte takes on the wire with 8 data bits, no parity, one stop bit: a start bit comes before.
+/// Bits on the wire for a byte with 8 data bits, no parity, one stop bit, and the start bit.
 pub(super) const BITS_PER_BYTE: u32 = 10;
 
 /// Bytes a second that 8N1 carries at this speed.
@@ -22,10 +22,10 @@ pub fn bytes_per_second(baud: u32) -> f64 {
     f64::from(baud) / f64::from(BITS_PER_BYTE)
 }
 
-/// The speeds that make sense, in baud.
+/// The range of sensible speeds, in baud.
 const SPEEDS: std::ops::RangeInclusive<u32> = 50..=20_000_000;
 
-/// Reads the speed that stands after `before` and a comma.
+/// Reads the speed after `before` and a comma.
 pub(super) fn speed(before: &str, digits: &str) -> Result<u32, Problem> {
     digits.parse().ok().filter(|baud| SPEEDS.contains(baud)).ok_or_else(|| {
         Problem::new(
@@ -35,7 +35,7 @@ pub(super) fn speed(before: &str, digits: &str) -> Result<u32, Problem> {
     })
 }
 
-/// Reads `PATH[,BAUD]`, which stands after `scheme`.
+/// Reads `PATH[,BAUD]` after `scheme`.
 pub(super) fn path_and_speed(
     scheme: &str,
     rest: &str,

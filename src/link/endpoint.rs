@@ -3,17 +3,17 @@
 use super::problem::Problem;
 use std::fmt;
 
-/// A place in a network: a name or an address, and a port.
+/// A network endpoint: a name or an address, and a port.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Endpoint {
-    /// A host's name or its address, an IPv6 one without brackets.
+    /// A host name or an address; IPv6 without brackets.
     pub host: String,
-    /// The port; 0 asks a listening link for any free one.
+    /// The port; 0 lets a listening link choose any free one.
     pub port: u16,
 }
 
 impl Endpoint {
-    /// A place by its name and port.
+    /// An endpoint from its host and port.
     pub fn new(host: impl Into<String>, port: u16) -> Self {
         let host = host.into();
         Self { host, port }
@@ -30,12 +30,12 @@ impl fmt::Display for Endpoint {
     }
 }
 
-/// Whether it is digits alone.
+/// Whether it consists of digits only.
 pub(super) fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Where a link listens: `ADDR:PORT`, or `PORT` alone for the loopback. Port 0 picks a free one.
+/// Where a link listens: `ADDR:PORT`, or `PORT` alone for the loopback. Port 0 chooses a free one.
 pub(super) fn listening(name: &str, rest: Option<&str>) -> Result<Endpoint, Problem> {
     let rest = rest.unwrap_or_default();
     if is_number(rest) {
@@ -45,7 +45,7 @@ pub(super) fn listening(name: &str, rest: Option<&str>) -> Result<Endpoint, Prob
     place(name, rest)
 }
 
-/// Where a link goes to: `ADDR:PORT`.
+/// Where a link connects or sends to: `ADDR:PORT`.
 pub(super) fn destination(name: &str, rest: Option<&str>) -> Result<Endpoint, Problem> {
     let rest = rest.unwrap_or_default();
     if is_number(rest) {
@@ -64,10 +64,10 @@ pub(super) fn destination(name: &str, rest: Option<&str>) -> Result<Endpoint, Pr
     Ok(place)
 }
 
-/// Where a link listens that is given a port alone.
+/// Where a link listens if only a port is given.
 pub(super) const LOOPBACK: &str = "127.0.0.1";
 
-/// `ADDR:PORT`; an IPv6 address stands in brackets.
+/// `ADDR:PORT`; an IPv6 address needs brackets.
 fn place(name: &str, rest: &str) -> Result<Endpoint, Problem> {
     let example = format!("{name}:{LOOPBACK}:14550");
     if rest.is_empty() {

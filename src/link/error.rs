@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use super::holders::Holder;
 
-/// Why a link could not be opened, or nobody came to it.
+/// Why a link did not open, or nobody connected.
 ///
-/// One enum for the room: a caller does nothing else with any of them than show it, so each names
-/// the link as it was spelled, the value that was wrong, and what would be right.
+/// One enum for the room, because a caller only shows these errors: each names the link as spelled, the bad value,
+/// and what would be right.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinkError {
-    /// The address cannot be understood.
+    /// The address has a spelling error.
     #[error("link `{spelled}`: {problem}; {right}")]
     Spelling {
         /// The address as written.
@@ -22,34 +22,34 @@ pub enum LinkError {
         /// What would be right.
         right: String,
     },
-    /// There is no such serial port.
+    /// There is no serial port with this name.
     #[error("link `{link}`: there is no port {}; {}", path.display(), present(ports))]
     NoSuchPort {
         /// The link as spelled.
         link: String,
         /// The device that is missing.
         path: PathBuf,
-        /// The ports that exist.
+        /// The existing ports.
         ports: Vec<String>,
     },
-    /// The user may not open the device.
+    /// The user has no permission for the device.
     #[error("link `{link}`: permission denied: {}; {remedy}", path.display())]
     Denied {
         /// The link as spelled.
         link: String,
         /// The device or file.
         path: PathBuf,
-        /// What would grant it.
+        /// How to get permission.
         remedy: String,
     },
-    /// Another process has the port.
+    /// Another process uses the port.
     #[error("link `{link}`: {} is busy: {}", path.display(), held_by(holders))]
     Busy {
         /// The link as spelled.
         link: String,
         /// The device.
         path: PathBuf,
-        /// The processes that hold it, as far as this user may see them.
+        /// The processes that hold it, as far as this user can see them.
         holders: Vec<Holder>,
     },
     /// The path is not a serial port.
@@ -60,44 +60,44 @@ pub enum LinkError {
         /// The path.
         path: PathBuf,
     },
-    /// The port does not run at this speed.
+    /// The port does not support this speed.
     #[error("link `{link}`: the port does not run at {baud} baud; usual speeds are 57600, 115200, 921600")]
     Baud {
         /// The link as spelled.
         link: String,
-        /// The speed asked for.
+        /// The requested speed.
         baud: u32,
     },
-    /// A pty cannot be published at this path.
+    /// A pty cannot publish itself at this path.
     #[error("link `{link}`: {} already exists{what}; choose another path, or remove it", path.display())]
     PathTaken {
         /// The link as spelled.
         link: String,
         /// The path.
         path: PathBuf,
-        /// What is there, where that helps.
+        /// What is there already, if that helps.
         what: String,
     },
-    /// The host's name has no address.
+    /// The host name has no address.
     #[error("link `{link}`: `{host}` has no address; give a numeric one, as in 127.0.0.1")]
     UnknownHost {
         /// The link as spelled.
         link: String,
         /// The name.
         host: String,
-        /// What the resolver said.
+        /// The resolver's error.
         source: io::Error,
     },
-    /// The address cannot be listened on.
+    /// The address does not allow listening.
     #[error("link `{link}`: cannot listen on {place}: {why}")]
     Listen {
         /// The link as spelled.
         link: String,
         /// The address and port.
         place: String,
-        /// What is in the way and what would do.
+        /// The obstacle, and what would work.
         why: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
     /// Nobody answers at the address.
@@ -107,24 +107,24 @@ pub enum LinkError {
         link: String,
         /// The address and port.
         place: String,
-        /// What is in the way and what would do.
+        /// The obstacle, and what would work.
         why: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// Anything else the system refused.
+    /// Any other error of the system.
     #[error("link `{link}`: cannot {doing}")]
     Io {
         /// The link as spelled.
         link: String,
-        /// What was being done.
+        /// The operation that failed.
         doing: String,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
 }
 
-/// The ports there are, as the end of a sentence.
+/// The existing ports, as the end of a sentence.
 fn present(ports: &[String]) -> String {
     match ports {
         [] => "no serial port found (`ratetable list ports` looks again)".to_owned(),
@@ -132,7 +132,7 @@ fn present(ports: &[String]) -> String {
     }
 }
 
-/// Who holds a port, and how to make it let go.
+/// Who holds a port, and how to release it.
 fn held_by(holders: &[Holder]) -> String {
     if holders.is_empty() {
         return "another process holds it (as root, find it with `sudo fuser -v` on it)".to_owned();

@@ -1,4 +1,4 @@
-//! A file that takes the packets one after the other, as they would go over a wire.
+//! A file that receives the packets one after another, as a wire would carry them.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -24,7 +24,7 @@ fn parse(rest: Option<&str>) -> Result<Address, Problem> {
     Ok(Address::File { path })
 }
 
-/// Makes the file, or empties it.
+/// Creates the file, or empties it.
 pub(super) fn open(address: &Address, path: &Path) -> Result<Link, LinkError> {
     let file = File::create(path).map_err(|source| LinkError::Io {
         link: address.to_string(),

@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 pub struct Holder {
     /// Its process id.
     pub pid: u32,
-    /// Its name, as the system knows it.
+    /// Its name in the system.
     pub name: String,
 }
 
 impl Holder {
-    /// How the usual suspects are made to let go.
+    /// How to make the usual programs release a device.
     pub(super) fn advice(&self) -> Option<&'static str> {
         let name = self.name.to_ascii_lowercase();
         if name.starts_with("qgroundcontrol") || name.starts_with("qgc") {
@@ -37,7 +37,7 @@ impl fmt::Display for Holder {
     }
 }
 
-/// The processes that have `device` open, as far as this user may see: only root sees everyone's.
+/// The processes that have `device` open, as far as this user can see: only root sees all of them.
 pub(super) fn holders(device: &Path) -> Vec<Holder> {
     let device = fs::canonicalize(device).unwrap_or_else(|_| device.to_owned());
     processes()
@@ -50,7 +50,7 @@ pub(super) fn holders(device: &Path) -> Vec<Holder> {
         .collect()
 }
 
-/// How many descriptors of all processes are `device`.
+/// How many descriptors of all processes refer to `device`.
 pub(super) fn times_open(device: &Path) -> usize {
     processes().map(|(_, process)| descriptors(&process, device).count()).sum()
 }
@@ -64,7 +64,7 @@ fn processes() -> impl Iterator<Item = (u32, PathBuf)> {
     })
 }
 
-/// The descriptors of a process (its folder in `/proc`) that are `device`.
+/// The descriptors of a process (its folder in `/proc`) that refer to `device`.
 fn descriptors(process: &Path, device: &Path) -> impl Iterator<Item = fs::DirEntry> {
     let all = fs::read_dir(process.join("fd")).into_iter().flatten();
     all.flatten().filter(move |entry| fs::read_link(entry.path()).is_ok_and(|target| target == device))

@@ -1,4 +1,4 @@
-//! Whether two paths, or two links, are the same: by what a path leads to, not by its spelling.
+//! Whether two paths or two links are the same: compares what a path leads to, not its spelling.
 
 use super::address::Address;
 use super::endpoint::Endpoint;
@@ -7,20 +7,20 @@ use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
-/// Symbolic links that are followed before a ring of them is taken for a file that is not there.
+/// The most symbolic links to follow; a longer chain is a cycle and counts as an absent file.
 const LINKS: usize = 40;
 
 /// What a path leads to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// Device and inode of what is there.
+    /// Device and inode, if it exists.
     there: Option<(u64, u64)>,
-    /// Where it is, or would be made: its folder without symbolic links, and its name in it.
+    /// Where it is, or would be created: its folder without symbolic links, and its name there.
     at: PathBuf,
 }
 
 impl Identity {
-    /// Of what the path leads to, through symbolic links, whether or not it is there yet.
+    /// The identity of what the path leads to through symbolic links, whether or not it exists yet.
     pub fn of(path: &Path) -> Identity {
         let mut path = path.to_path_buf();
         for _ in 0..LINKS {
@@ -33,23 +33,23 @@ impl Identity {
         Identity { there: found.map(|found| (found.dev(), found.ino())), at: place(&path) }
     }
 
-    /// Of the name itself: a symbolic link is not followed.
+    /// The identity of the name itself, without following a symbolic link.
     pub fn of_name(path: &Path) -> Identity {
         Identity { there: None, at: place(path) }
     }
 
-    /// Whether both are one thing.
+    /// Whether both are the same.
     pub fn is(&self, other: &Identity) -> bool {
         self.at == other.at || (self.there.is_some() && self.there == other.there)
     }
 
-    /// Whether it is in that folder, at any depth, or is the folder.
+    /// Whether it is that folder or lies in it, at any depth.
     pub fn is_within(&self, folder: &Identity) -> bool {
         self.at.starts_with(&folder.at) || self.is(folder)
     }
 }
 
-/// The path with its folder made canonical as far up as there is one.
+/// The path with its folder made canonical, as far as the folder exists.
 fn place(path: &Path) -> PathBuf {
     if let Ok(canonical) = fs::symlink_metadata(path).and_then(|found| match found.is_symlink() {
         true => Err(std::io::ErrorKind::Other.into()),
@@ -71,20 +71,20 @@ fn place(path: &Path) -> PathBuf {
     folder
 }
 
-/// Whether a path takes anything and keeps nothing, as `/dev/null` does: two may share it.
+/// Whether a path accepts data and keeps nothing, like `/dev/null`: two links may share it.
 fn keeps_nothing(path: &Path) -> bool {
     let device = |path: &Path| fs::metadata(path).ok().filter(|it| it.file_type().is_char_device());
     device(path).is_some_and(|it| device(Path::new("/dev/null")).is_some_and(|null| null.rdev() == it.rdev()))
 }
 
 impl Address {
-    /// What its path leads to, of a link that writes to one; nothing of a pty without a name.
+    /// What its path leads to, for a link that writes to one; `None` for a pty without a name.
     pub fn identity(&self) -> Option<Identity> {
         match self {
             Self::Pty { path, .. } => path.as_deref().map(Identity::of_name),
             Self::File { path } if keeps_nothing(path) => None,
             Self::Serial { path, .. } | Self::File { path } => Some(Identity::of(path)),
-            // What it is redirected to, if that is a file: a pipe or a terminal is nobody else's.
+            // What it is redirected to, if that is a file: nobody else shares a pipe or a terminal.
             Self::Stdout => {
                 let path = Path::new("/proc/self/fd/1");
                 fs::metadata(path).is_ok_and(|found| found.is_file()).then(|| Identity::of(path))
@@ -93,7 +93,7 @@ impl Address {
         }
     }
 
-    /// Whether packets of both would be mixed, or one of the two cannot be opened.
+    /// Whether both would mix their packets, or only one of them can open.
     pub fn is_same(&self, other: &Address) -> bool {
         match (self, other) {
             (Self::TcpIn(one), Self::TcpIn(two)) | (Self::UdpIn(one), Self::UdpIn(two)) => meets(one, two),
@@ -106,7 +106,7 @@ impl Address {
     }
 }
 
-/// Whether two that listen ask for one port.
+/// Whether two listening links want the same port.
 fn meets(one: &Endpoint, two: &Endpoint) -> bool {
     let any = |place: &Endpoint| ["0.0.0.0", "::", "*"].contains(&place.host.as_str());
     one.port != 0 && one.port == two.port && (host(one) == host(two) || any(one) || any(two))
@@ -145,7 +145,7 @@ mod tests {
             assert!(!Identity::of(&at(name)).is(&scene), "{name}");
         }
         assert!(!Identity::of_name(&at("soft")).is(&scene), "the link itself");
-        // Not there yet.
+        // It does not exist yet.
         let absent = Identity::of(&at("absent"));
         for name in ["dangling", "sub/up/absent", "sub/../absent"] {
             assert!(Identity::of(&at(name)).is(&absent), "{name}");

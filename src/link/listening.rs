@@ -12,11 +12,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Link {
-    /// Opens a link for its [`receiver`](Link::receiver): as [`open`](Link::open) does, but `file:PATH` is read,
-    /// a recording to its end and a pipe or device as it comes, and `-` is standard input.
+    /// Opens a link for its [`receiver`](Link::receiver), like [`open`](Link::open), with two differences:
+    /// `file:PATH` is read, a recording to its end and a pipe or device as data arrives, and `-` is standard input.
     ///
     /// # Errors
-    /// What [`open`](Link::open) refuses, and a file that cannot be read.
+    /// The errors of [`open`](Link::open), and a file that is not readable.
     ///
     /// # Panics
     /// Outside a tokio runtime with I/O and time enabled.
@@ -44,13 +44,13 @@ impl Link {
         }
     }
 
-    /// Whether bytes come when they are sent, and not from a recording.
+    /// Whether bytes arrive when they are sent, not from a recording.
     pub fn is_live(&self) -> bool {
         !self.receiver.as_ref().is_some_and(|receiver| receiver.is_recording())
     }
 }
 
-/// Whether a path names a pseudo terminal, whose baud rate means nothing.
+/// Whether a path names a pseudo terminal, where a baud rate has no meaning.
 pub fn is_pty(path: &Path) -> bool {
     std::fs::canonicalize(path).is_ok_and(|device| device.starts_with("/dev/pts"))
 }
@@ -64,7 +64,7 @@ fn from_path(path: &Path) -> io::Result<Link> {
     of(&path.display().to_string(), open(path, flags, Mode::empty())?)
 }
 
-/// A link that only brings what `input` holds.
+/// A link that only receives what `input` holds.
 fn of(name: &str, input: OwnedFd) -> io::Result<Link> {
     let receiver = match FileType::from_raw_mode(fstat(&input)?.st_mode) {
         FileType::RegularFile => Recording(File::from(input)).into(),
@@ -74,7 +74,7 @@ fn of(name: &str, input: OwnedFd) -> io::Result<Link> {
             let input = Arc::new(input);
             match Readable::new(input.clone()) {
                 Ok(input) => input.into(),
-                // What cannot be waited for is always ready, as /dev/null.
+                // A file that does not support polling, like /dev/null, is always ready.
                 Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
                     Recording(File::from(input.try_clone()?)).into()
                 }
@@ -90,7 +90,7 @@ fn of(name: &str, input: OwnedFd) -> io::Result<Link> {
 pub(super) struct Recording(File);
 
 impl Recording {
-    /// The next piece; a disk is always ready, but others get their turn.
+    /// The next piece. A disk is always ready; this lets other tasks run.
     pub(super) async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
         tokio::task::yield_now().await;
         let mut piece = [0; 16_384];

@@ -1,4 +1,4 @@
-//! A link within the process, for tests: bounded, and it stalls, is unplugged or breaks when told to.
+//! A link within the process, for tests: bounded; it stalls, unplugs or breaks on request.
 
 use std::io;
 use std::os::fd::BorrowedFd;
@@ -11,7 +11,7 @@ use tokio::sync::mpsc;
 use super::sender::{Carry, Out, Sender};
 use super::{Kind, Link};
 
-/// A link whose far side is in the caller's hand and takes `capacity` bytes before it is full.
+/// A link whose far side the caller holds; it accepts `capacity` bytes before it is full.
 pub fn memory(capacity: usize) -> (Link, Far) {
     let (producer, consumer) = RingBuffer::new(capacity);
     let (answer, answers) = mpsc::unbounded_channel();
@@ -37,7 +37,7 @@ pub struct Far {
 }
 
 impl Far {
-    /// The bytes that have arrived since the last call; makes room for as many.
+    /// Takes the bytes that arrived since the last call, which makes room for as many.
     pub fn take(&mut self) -> Vec<u8> {
         let waiting = self.consumer.slots();
         let Ok(chunk) = self.consumer.read_chunk(waiting) else {
@@ -49,12 +49,12 @@ impl Far {
         bytes
     }
 
-    /// While it stalls, the link takes nothing, whatever room it has.
+    /// While stalled, the link accepts nothing, whatever room it has.
     pub fn stall(&self, stalled: bool) {
         self.switches.stalled.store(stalled, Ordering::Release);
     }
 
-    /// While it is unplugged, the link is `Away`, as a serial port that may come back.
+    /// While unplugged, the link is `Away`, like a serial port that may come back.
     pub fn unplug(&self, unplugged: bool) {
         self.switches.unplugged.store(unplugged, Ordering::Release);
     }
@@ -62,13 +62,12 @@ impl Far {
     /// Sends bytes back.
     pub fn answer(&self, bytes: &[u8]) {
         if let Some(answer) = &self.answer {
-            // A link that was dropped no longer listens.
+            // A dropped link no longer listens.
             let _ = answer.send(bytes.to_owned());
         }
     }
 
-    /// Leaves: from now on the link is `Gone` and its receiver ends. What has arrived can still be
-    /// taken.
+    /// Leaves: from now on the link is `Gone` and its receiver ends. Bytes that arrived can still be taken.
     pub fn leave(&mut self) {
         self.switches.gone.store(true, Ordering::Release);
         self.answer = None;

@@ -1,4 +1,4 @@
-//! What TCP and UDP have in common: names, and what a refusal means.
+//! Shared by TCP and UDP: names, and the meaning of a refusal.
 
 use std::io;
 use std::net::SocketAddr;
@@ -7,7 +7,7 @@ use super::LinkError;
 use super::address::Address;
 use super::endpoint::Endpoint;
 
-/// The addresses of a place, IPv4 first.
+/// The addresses of an endpoint, IPv4 first.
 pub(super) async fn resolve(address: &Address, place: &Endpoint) -> Result<Vec<SocketAddr>, LinkError> {
     let unknown =
         |source| LinkError::UnknownHost { link: address.to_string(), host: place.host.clone(), source };
@@ -20,12 +20,12 @@ pub(super) async fn resolve(address: &Address, place: &Endpoint) -> Result<Vec<S
     }
 }
 
-/// The first address of a place.
+/// The first address of an endpoint.
 pub(super) async fn resolve_one(address: &Address, place: &Endpoint) -> Result<SocketAddr, LinkError> {
     Ok(resolve(address, place).await?[0])
 }
 
-/// Why a place cannot be listened on.
+/// Why a link cannot listen at an endpoint.
 pub(super) fn cannot_listen(address: &Address, place: &Endpoint, source: io::Error) -> LinkError {
     let why = match source.kind() {
         io::ErrorKind::AddrInUse => "another program uses that port; port 0 picks a free one",
@@ -38,7 +38,7 @@ pub(super) fn cannot_listen(address: &Address, place: &Endpoint, source: io::Err
     LinkError::Listen { link: address.to_string(), place: place.to_string(), why, source }
 }
 
-/// Why a place cannot be reached.
+/// Why a link cannot reach an endpoint.
 pub(super) fn cannot_reach(address: &Address, place: &Endpoint, source: io::Error) -> LinkError {
     let why = match source.kind() {
         io::ErrorKind::ConnectionRefused => {

@@ -1,8 +1,8 @@
-//! The plug of a serial port, which may be unplugged and reconnected while packets are sent.
+//! The descriptor of a serial port that may be unplugged and reconnected while packets are sent.
 //!
-//! Everybody writes to one descriptor for as long as the link lives. What is behind it changes: a port that is
-//! gone is let go at once (while it is held, the system gives the returning device another name), and the same
-//! path, opened again, takes its place. The pacing thread sees a flag and never waits.
+//! Everybody writes to one descriptor for the life of the link. What it refers to changes: a port that is gone is
+//! released at once (while it is held, the system gives the returning device another name), and the same path,
+//! reopened, takes its place. The pacing thread sees a flag and never waits.
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
@@ -24,7 +24,7 @@ pub(super) struct Plug {
 }
 
 impl Plug {
-    /// Of a port that is there.
+    /// A plug with a present port.
     pub(super) fn new(port: OwnedFd) -> Self {
         Self { port, out: AtomicBool::new(false) }
     }
@@ -34,7 +34,7 @@ impl Plug {
         self.out.load(Ordering::Acquire)
     }
 
-    /// Asks the port itself: a terminal that is gone answers nothing any more.
+    /// Asks the port itself: a terminal that is gone no longer answers.
     pub(super) fn has_gone(&self) -> bool {
         self.is_out()
             || matches!(
@@ -43,10 +43,10 @@ impl Plug {
             )
     }
 
-    /// Lets go of a port that is gone.
+    /// Releases a port that is gone.
     pub(super) fn pull(&self) {
         self.out.store(true, Ordering::Release);
-        // Something that can be written to no more than the port itself.
+        // A stand-in that rejects writes as the lost port does.
         let flags = OFlags::RDONLY | OFlags::CLOEXEC;
         if let Ok(nothing) = rustix::fs::open("/dev/null", flags, Mode::empty()) {
             let _ = os::redirect(&self.port, &nothing);
@@ -83,7 +83,7 @@ impl Out for Plugged {
         if error.kind() == away {
             self.0.out.store(true, Ordering::Release);
         }
-        // It may have been let go between the two looks.
+        // Another thread may have released it between the two looks.
         Err(if self.0.is_out() { away.into() } else { error })
     }
 

@@ -1,5 +1,5 @@
-//! A serial port that is pulled out and put in again: here the slave of a pty whose master closes, published at a
-//! path that then leads to another. The system calls answer as those of an adapter do.
+//! A serial port that is unplugged and reconnected: here the slave of a pty whose master closes, published at a
+//! path that then leads to another. The system calls answer as they do for an adapter.
 
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::symlink;
@@ -11,7 +11,7 @@ use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 
 use super::*;
 
-/// A new pty published at `path`, in the place of what was there.
+/// A new pty published at `path`, in place of the previous one.
 fn plug_in(path: &Path) -> OwnedFd {
     let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
     let master = openpt(flags).unwrap();
@@ -22,7 +22,7 @@ fn plug_in(path: &Path) -> OwnedFd {
     master
 }
 
-/// Polls until `done`, for as long as the slowest machine needs.
+/// Polls until `done`, long enough for the slowest machine.
 async fn until(what: &str, mut done: impl FnMut() -> bool) {
     for _ in 0..60_000 {
         if done() {
@@ -68,7 +68,7 @@ async fn a_port_that_is_pulled_out_is_found_again_by_its_path() {
         assert!(link.peer_is_present() && !link.is_unplugged());
         std::fs::remove_file(&path).unwrap();
         drop(master);
-        // In turn it is the receiver, or the sender, that finds it gone.
+        // The receiver and the sender take turns in finding it gone.
         if round != 1 {
             until("the unplugging", || link.is_unplugged()).await;
         }
@@ -88,7 +88,7 @@ async fn a_packet_that_was_cut_by_the_plug_does_not_go_on_after_it() {
     let mut link = Link::open(&format!("serial:{}", path.display()).parse().unwrap()).await.unwrap();
     let (mut sender, mut receiver) = (link.sender(), link.receiver().unwrap());
     let ear = tokio::spawn(async move { while receiver.recv(&mut BytesMut::new()).await.is_ok() {} });
-    // Nobody reads: in the end a packet is taken in part.
+    // Nobody reads: in the end the port takes a packet in part.
     until("a full port", || sender.send(&[1; 1000]) == Sent::Full).await;
     assert!(sender.kept() > 0);
     drop(master);

@@ -1,18 +1,18 @@
-//! The serial ports that are plugged in.
+//! The serial ports of this machine.
 
 use std::fmt;
 use std::path::PathBuf;
 
 use serialport::SerialPortType;
 
-/// A serial port, and what to do with it.
+/// A serial port, and how to use it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Port {
     /// The device.
     pub path: PathBuf,
-    /// What a USB device calls itself.
+    /// The product name of a USB device.
     pub product: Option<String>,
-    /// Who made a USB device.
+    /// The manufacturer of a USB device.
     pub manufacturer: Option<String>,
     /// A command line that uses it.
     pub command: String,
@@ -28,7 +28,7 @@ impl fmt::Display for Port {
     }
 }
 
-/// Words in what a flight controller that speaks MAVLink says of itself.
+/// Words in the product names of flight controllers that speak MAVLink.
 const MAVLINK: &[&str] = &["px4", "3d robotics", "ardupilot", "hex/proficnc", "cubepilot"];
 
 /// The serial ports of this machine, by path.

@@ -1,8 +1,8 @@
-//! A pseudo terminal: to the program that opens it, a serial port.
+//! A pseudo terminal: a serial port to the program that opens it.
 //!
-//! We own the master and one descriptor of the slave. The latter keeps the pair alive while readers
-//! come and go, lets us see how much they have not read, and means that a write never fails: with
-//! nobody there it is `Full` once the kernel's buffers (12 to 20 kB) are.
+//! We own the master and one descriptor of the slave. The latter keeps the pair alive while readers come and go,
+//! shows how much they have not read, and means that a write never fails: without a reader it is `Full` once the
+//! kernel's buffers (12 to 20 kB) are.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -43,29 +43,29 @@ fn parse(rest: Option<&str>) -> Result<Address, Problem> {
     Ok(Address::Pty { path: Some(path), baud })
 }
 
-/// `pty,BAUD`: a speed needs no path before it.
+/// `pty,BAUD`: a speed without a path before it.
 pub(super) fn parse_speed(digits: &str) -> Result<Address, Problem> {
     let baud = baud::speed("pty", digits)?;
     Ok(Address::Pty { path: None, baud: Some(baud) })
 }
 
-/// The rest between two looks at the buffers when closing.
+/// Time between two looks at the buffers when closing.
 const LOOK: Duration = Duration::from_millis(5);
-/// Looks before a reader that does not read is left alone: one second.
+/// Looks before the close gives up on a reader that does not read: one second.
 const LOOKS: u32 = 200;
-/// Looks in a row that must find nothing unread: a reader that has just taken the last visible
-/// bytes is about to make the kernel show the next ones.
+/// Looks in a row that must find nothing unread: when a reader takes the last visible bytes, the kernel may show
+/// more.
 const EMPTY_LOOKS: u32 = 4;
 
 /// An open pty.
 pub(super) struct Pty {
-    /// Closed, it would take from the reader what it has not read: it outlives both halves.
+    /// Closing it discards what the reader has not read, so it outlives both halves.
     master: Arc<OwnedFd>,
     slave: Arc<OwnedFd>,
     device: PathBuf,
     published: Option<PathBuf>,
     visitors: Visitors,
-    /// Where it takes the time of one.
+    /// The UART that it emulates, if any.
     uart: Option<Uart>,
 }
 
@@ -92,7 +92,7 @@ pub(super) fn open(address: &Address, path: Option<&Path>, baud: Option<u32>) ->
     Ok(Link { notices, ..Link::new(name, Kind::Pty(pty), sender, Some(readable.into())) })
 }
 
-/// Makes a raw pair, and the master as something to wait on.
+/// Opens a pair in raw mode, with the master ready for polling.
 fn pair() -> io::Result<(Pty, Readable)> {
     let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
     let master = openpt(flags)?;
@@ -124,15 +124,15 @@ impl Pty {
         self.visitors.arrival().await;
     }
 
-    /// Bytes that the reader has not read, as far as the kernel shows them: at most 4 kB of its own buffers, and
-    /// what a UART holds.
+    /// Bytes that the reader has not read: those the kernel shows, at most 4 kB of its buffers, and those that a
+    /// UART holds.
     pub(super) fn queued(&self) -> Option<usize> {
         let unread = os::unread(&self.slave).ok()?;
         Some(unread + self.uart.as_ref().map_or(0, Uart::held))
     }
 
-    /// Waits, up to a second, until the reader has emptied the buffers; not when there is none. A UART first sends
-    /// what it holds.
+    /// Waits up to a second until the reader has emptied the buffers; does not wait without a reader. A UART first
+    /// sends what it holds.
     pub(super) async fn close(self) {
         if let Some(uart) = self.uart.as_ref().filter(|_| self.visitors.present()) {
             uart.close().await;
@@ -149,8 +149,8 @@ impl Pty {
 
     /// Whether nothing is left to read, as far as the kernel shows it.
     ///
-    /// `FIONREAD` alone says 0 while bytes wait to be moved to where it counts them, on a loaded
-    /// machine for long; `poll` has them moved first.
+    /// `FIONREAD` alone says 0 while bytes still wait to be moved to where it counts them, which takes long on a
+    /// loaded machine; `poll` moves them first.
     fn is_read(&self) -> bool {
         let at_once = Timespec::default();
         let mut asked = [PollFd::new(&self.slave, PollFlags::IN)];
@@ -169,7 +169,7 @@ impl Drop for Pty {
     }
 }
 
-/// Makes `path` a symbolic link to `device`, in the place of one that a killed run left behind.
+/// Makes `path` a symbolic link to `device`, replacing one that a killed run left behind.
 fn publish(link: &str, device: &Path, path: &Path) -> Result<(), LinkError> {
     if is_stale(path, device) {
         let _ = fs::remove_file(path);
@@ -191,7 +191,7 @@ fn publish(link: &str, device: &Path, path: &Path) -> Result<(), LinkError> {
     })
 }
 
-/// Whether `path` links to a pseudo terminal that is gone, or that is now our own.
+/// Whether `path` links to a pseudo terminal that is gone, or that is now ours.
 fn is_stale(path: &Path, device: &Path) -> bool {
     fs::read_link(path)
         .is_ok_and(|target| target == device || target.starts_with("/dev/pts") && !target.exists())

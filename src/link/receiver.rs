@@ -1,4 +1,4 @@
-//! The way back: what the other side answers.
+//! The receiving half of a link.
 
 use std::io;
 
@@ -12,27 +12,27 @@ use crate::os::Readable;
 /// The receiving side of a link, for one task.
 pub struct Receiver(Source);
 
-/// Where the bytes come from, one a kind of link that answers.
+/// The source of the bytes, one variant for each kind of link that receives.
 enum Source {
     Pty(Readable),
     Serial(serial::In),
     Tcp(tcp::In),
     Udp(udp::In),
-    /// A file that was written before.
+    /// A file written earlier.
     Recording(listening::Recording),
     Memory(mpsc::UnboundedReceiver<Vec<u8>>),
 }
 
 impl Receiver {
-    /// Whether the bytes were written before, and come as fast as they are read.
+    /// Whether the bytes were written earlier, and arrive as fast as they are read.
     pub(super) fn is_recording(&self) -> bool {
         matches!(self.0, Source::Recording(_))
     }
 
-    /// Waits for bytes and appends them to `buffer`: how many, or 0 when the other side has left.
+    /// Waits for bytes and appends them to `buffer`. Returns how many, or 0 when the other side has left.
     ///
-    /// A read may hold several packets, or a part of one; over UDP it is one datagram. On a link
-    /// that waits for its peer, this waits for it too. Cancelling it loses nothing.
+    /// A read may hold several packets, or a part of one; over UDP it is one datagram. On a link that waits for its
+    /// peer, this also waits for it. Cancelling it loses nothing.
     pub async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
         match &mut self.0 {
             Source::Pty(master) => read(master, buffer).await,
@@ -49,7 +49,7 @@ impl Receiver {
     }
 }
 
-/// A kind of link hands its receiving side over by `into`, so that it need not know this table.
+/// Each kind of link converts its receiving side with `into`, so that it does not depend on this table.
 macro_rules! from {
     ($($input:ty => $kind:ident),* $(,)?) => {$(
         impl From<$input> for Receiver {

@@ -19,7 +19,7 @@ pub const SCHEMES: &[Scheme] = &[
     stdout::SCHEME,
 ];
 
-/// What other tools call these links, and what they are called here.
+/// Names for these links in other tools, and their names here.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("stdout", "-"),
     ("tcplisten", "tcpin"),
@@ -48,7 +48,7 @@ impl FromStr for Address {
     }
 }
 
-/// Reads an address by the table.
+/// Parses an address by the table.
 fn parse(spelled: &str) -> Result<Address, Problem> {
     if spelled.starts_with('/') {
         return serial::parse(spelled);
@@ -66,7 +66,7 @@ fn parse(spelled: &str) -> Result<Address, Problem> {
     }
 }
 
-/// Why `name` is no link, and which one was probably meant.
+/// Why `name` is no link, and which link was probably meant.
 fn unknown(name: &str, rest: Option<&str>) -> Problem {
     let rest = rest.map(|rest| rest.trim_start_matches('/'));
     let lower = name.to_ascii_lowercase();
@@ -93,7 +93,7 @@ fn unknown(name: &str, rest: Option<&str>) -> Problem {
     }
 }
 
-/// `tcp:` and `udp:` do not say who waits for whom.
+/// `tcp:` and `udp:` do not say which side waits.
 fn two_readings(name: &str, rest: Option<&str>) -> Problem {
     let place = match rest.unwrap_or_default() {
         "" => format!("{LOOPBACK}:14550"),
@@ -110,7 +110,7 @@ fn two_readings(name: &str, rest: Option<&str>) -> Problem {
     )
 }
 
-/// The spelling whose name is closest to `name`, where one is close.
+/// The spelling whose name is closest to `name`, if one is close.
 fn nearest(name: &str) -> Option<&'static str> {
     let plain: String = name.chars().filter(char::is_ascii_alphabetic).collect();
     let elsewhere = ELSEWHERE.iter().find(|(other, _)| *other == plain);

@@ -1,4 +1,4 @@
-//! The way out: what the pacing thread holds. No allocation, no lock, no executor.
+//! The sending half of a link, for the pacing thread. No allocation, no lock, no executor.
 
 use std::io;
 use std::os::fd::BorrowedFd;
@@ -6,42 +6,42 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-/// The longest packet a link takes, in bytes.
+/// The longest packet that a link accepts, bytes.
 pub const MAX_WRITE: usize = 65_536;
 
-/// The outcome of a packet.
+/// What happened to a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Sent {
     /// The link has all of it.
     Done,
-    /// The link takes nothing now, or nobody has come to it yet, and it has none of the packet.
+    /// The link accepts nothing now, or nobody has connected yet; it has none of the packet.
     Full,
-    /// The port was pulled out, and may come back; it has none of the packet, and the rest of the one before is
+    /// The port was unplugged and may come back. It has none of the packet, and the rest of the previous one is
     /// lost.
     Away,
-    /// Nobody is there any more, or the packet can never be sent (`InvalidInput`: too long).
+    /// Nobody is there any more, or the packet can never go out (`InvalidInput`: too long).
     Gone(io::ErrorKind),
 }
 
 /// The sending side of a link, for one thread.
 ///
-/// A packet is never cut: where the system takes only a part of it, the rest is kept here and goes
-/// out before the next packet. Call [`finish`](Self::finish) at the end.
+/// A packet is never truncated: if the system takes only a part, the sender keeps the rest and sends it before the
+/// next packet. Call [`finish`](Self::finish) at the end.
 pub struct Sender {
     to: Box<dyn Out>,
     carry: Carry,
 }
 
-/// Where the bytes of one kind of link go.
+/// The output of one kind of link.
 pub(super) trait Out: Send {
-    /// One call to the system, which never waits: how many bytes it took, or `WouldBlock`.
+    /// One non-blocking system call: the number of bytes that it took, or `WouldBlock`.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
 
-    /// What to wait on until it takes more, where there is such a thing now.
+    /// The descriptor to poll until it accepts more, if there is one now.
     fn poll_fd(&self) -> Option<BorrowedFd<'_>>;
 
-    /// Whether one who is not there now (`NotConnected`) may come back.
+    /// Whether a peer that is not there now (`NotConnected`) may come back.
     fn comes_back(&self) -> bool {
         false
     }
@@ -52,17 +52,17 @@ impl Sender {
         Self { to: Box::new(to), carry }
     }
 
-    /// Sends a packet if the link takes it now; never waits.
+    /// Sends a packet if the link accepts it now; never waits.
     ///
     /// A file gathers packets and writes many at once; that write may wait for the disk.
     pub fn send(&mut self, packet: &[u8]) -> Sent {
         self.take(packet, self.carry.gather == Gather::Always)
     }
 
-    /// Sends `bytes`, waiting for as long as the link is full; nothing is dropped.
+    /// Sends `bytes` and waits while the link is full; drops nothing.
     ///
-    /// `Full`, or `Away`, only after `stop` was set, looked at every 50 ms. More than [`MAX_WRITE`] bytes may then
-    /// have been sent in part.
+    /// Returns `Full` or `Away` only after `stop` is set, which it checks every 50 ms. Of more than [`MAX_WRITE`]
+    /// bytes, a part may then have been sent.
     pub fn send_all(&mut self, bytes: &[u8], stop: &AtomicBool) -> Sent {
         let gather = self.carry.gather != Gather::Never;
         for part in bytes.chunks(MAX_WRITE) {
@@ -78,9 +78,8 @@ impl Sender {
         Sent::Done
     }
 
-    /// Sends a packet like [`send`](Self::send), of which no more than the first `count` bytes go out now; the rest is
-    /// kept until [`send_kept`](Self::send_kept), or until the next packet. A link of datagrams or gathered blocks takes
-    /// all of it.
+    /// Sends a packet like [`send`](Self::send), but at most its first `count` bytes go out now. The rest waits for
+    /// [`send_kept`](Self::send_kept) or the next packet. A link of datagrams or gathered blocks sends all of it.
     pub fn send_first(&mut self, packet: &[u8], count: usize) -> Sent {
         if self.carry.gather != Gather::Never || !self.carry.fits(packet.len()) {
             return self.send(packet);
@@ -98,7 +97,7 @@ impl Sender {
         }
     }
 
-    /// The same, waiting like [`send_all`](Self::send_all).
+    /// Like [`send_first`](Self::send_first), but waits like [`send_all`](Self::send_all).
     pub fn send_all_first(&mut self, packet: &[u8], count: usize, stop: &AtomicBool) -> Sent {
         loop {
             match self.send_first(packet, count) {
@@ -108,7 +107,7 @@ impl Sender {
         }
     }
 
-    /// Sends `count` bytes more of what is kept, as far as the link takes them now.
+    /// Sends `count` more of the kept bytes, as far as the link accepts them now.
     pub fn send_kept(&mut self, count: usize) {
         let kept = self.carry.kept();
         if !kept.is_empty() {
@@ -119,9 +118,9 @@ impl Sender {
         }
     }
 
-    /// Sends what is kept of earlier packets as far as the link takes it now; never waits.
+    /// Sends what is kept of earlier packets as far as the link accepts it now; never waits.
     ///
-    /// `Done` when nothing is kept any more, `Full` when something is.
+    /// `Done` when nothing is kept any more, `Full` otherwise.
     fn flush_carry(&mut self) -> Sent {
         while !self.carry.kept().is_empty() {
             match write(&mut *self.to, self.carry.kept()) {
@@ -132,8 +131,8 @@ impl Sender {
         Sent::Done
     }
 
-    /// Sends all that is kept, waiting where needed: without limit for a file or standard output,
-    /// otherwise as long as bytes move at least once a second (`TimedOut`).
+    /// Sends all that is kept and waits if necessary: without limit for a file or standard output, otherwise as
+    /// long as bytes move at least once a second (`TimedOut`).
     pub fn finish(&mut self) -> io::Result<()> {
         let patient = self.carry.gather != Gather::Never;
         let mut idle_ms = 0;
@@ -153,7 +152,7 @@ impl Sender {
         }
     }
 
-    /// Bytes kept here because the system did not take them yet.
+    /// Bytes kept because the system has not taken them yet.
     pub fn kept(&self) -> usize {
         self.carry.kept().len()
     }
@@ -168,7 +167,7 @@ impl Sender {
         }
         match self.flush_carry() {
             Sent::Done => {}
-            // A batch needs room, not emptiness.
+            // A batch needs enough room, not an empty buffer.
             Sent::Full if gather && self.carry.fits(packet.len()) => {}
             other => return other,
         }
@@ -179,7 +178,7 @@ impl Sender {
         match write(&mut *self.to, packet) {
             Ok(count) if count < packet.len() => {
                 self.carry.keep(&packet[count..]);
-                // What is in the way may have been a limit on one call.
+                // A limit on one call may have stopped it: try again.
                 match self.flush_carry() {
                     Sent::Full => Sent::Done,
                     other => other,
@@ -190,7 +189,7 @@ impl Sender {
         }
     }
 
-    /// What a refusal means; nobody waits for what is kept for one who is gone.
+    /// Handles a refusal: bytes kept for a peer that is gone are dropped.
     fn refused(&mut self, sent: Sent) -> Sent {
         if let Sent::Gone(_) | Sent::Away = sent {
             self.carry.clear();
@@ -198,9 +197,9 @@ impl Sender {
         sent
     }
 
-    /// Waits until the link may take something, one slice at most: for about how many ms.
+    /// Waits until the link may accept something, for one slice at most. Returns about how many ms it waited.
     ///
-    /// Woken early or for nothing, the caller only asks again.
+    /// An early or spurious wake-up only makes the caller try again.
     fn wait(&self) -> i64 {
         let (slice_ms, woken) = match self.to.poll_fd() {
             Some(fd) => (SLICE_MS, poll_writable(fd, &ms(SLICE_MS))),
@@ -214,15 +213,15 @@ impl Sender {
 }
 
 impl Drop for Sender {
-    /// Sends what the link takes without waiting; `finish` is the way to know that it did.
+    /// Sends what the link accepts without a wait; only `finish` confirms it.
     fn drop(&mut self) {
         let _ = self.flush_carry();
     }
 }
 
-/// One slice of waiting, so that a wish to stop is seen.
+/// The longest wait before `stop` is checked again.
 const SLICE_MS: i64 = 50;
-/// The same where nothing wakes us: in memory, and with nobody connected.
+/// The same without a wake-up: in memory, and with nobody connected.
 const BLIND_SLICE_MS: i64 = 1;
 /// How long `finish` waits for bytes to move.
 const PATIENCE_MS: i64 = 1000;
@@ -235,7 +234,7 @@ fn poll_writable(fd: BorrowedFd<'_>, slice: &Timespec) -> rustix::io::Result<usi
     poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::OUT)], Some(slice))
 }
 
-/// One write: how many bytes were taken, or why none was.
+/// One write: the number of bytes taken, or why none was.
 fn write(to: &mut dyn Out, bytes: &[u8]) -> Result<usize, Sent> {
     loop {
         match to.write(bytes) {
@@ -258,11 +257,11 @@ fn meaning(error: &io::Error) -> Sent {
     }
 }
 
-/// When packets are gathered to be written many at once.
+/// When to gather packets and write many at once.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Gather {
     Never,
-    /// In `send_all` only: a packet that is due goes out at once.
+    /// Only in `send_all`: a packet that is due goes out at once.
     WhenUnpaced,
     Always,
 }
@@ -285,7 +284,7 @@ impl Carry {
         Self::new(MAX_WRITE, Gather::Never)
     }
 
-    /// For datagrams, which go whole or not at all.
+    /// For datagrams, which go out whole or not at all.
     pub(super) fn none() -> Self {
         Self::new(0, Gather::Never)
     }
@@ -295,7 +294,7 @@ impl Carry {
         Self::new(4 * MAX_WRITE, Gather::Always)
     }
 
-    /// For a pipe that somebody may be watching.
+    /// For a pipe that somebody may watch.
     pub(super) fn lively_batch() -> Self {
         Self::new(4 * MAX_WRITE, Gather::WhenUnpaced)
     }

@@ -1,4 +1,4 @@
-//! A serial port: 8 data bits, no parity, one stop bit, at any speed, for us alone.
+//! A serial port: 8 data bits, no parity, one stop bit, any speed, claimed for us alone.
 
 use std::fs;
 use std::io;
@@ -41,19 +41,19 @@ pub(super) fn parse(rest: &str) -> Result<Address, Problem> {
     Ok(Address::Serial { path, baud })
 }
 
-/// Between two tries to open a port that was pulled out.
+/// Time between two attempts to open a port that was unplugged.
 const AGAIN: Duration = Duration::from_millis(100);
-/// How soon the receiving side sees that the sending side has found the port gone.
+/// How soon the receiving side notices that the sending side found the port gone.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// An open serial port.
 pub(super) struct Serial {
     plug: Arc<Plug>,
-    /// Dropped, it gives the port back: it lives as long as the link, whatever its receiver does.
+    /// Dropping it releases the port, so it lives as long as the link, whatever its receiver does.
     _claim: Arc<Mutex<Option<SerialStream>>>,
 }
 
-/// Opens a port, which may then come and go for as long as somebody receives: it is looked for by its path.
+/// Opens a port. While somebody receives, the link finds an unplugged port again by its path.
 pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, LinkError> {
     let (port, stream) = claim(address, path, baud)?;
     let notices = notices(path, baud, &port, &stream);
@@ -72,16 +72,16 @@ pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, Li
     Ok(Link { notices, ..Link::new(path.display(), Kind::Serial(serial), sender, Some(receiver)) })
 }
 
-/// Opens a port twice: once for us, to ask and to write without an executor, and once as
-/// [`SerialStream`], which claims and configures it and receives.
+/// Opens a port twice: once for queries and writes without an executor, and once as [`SerialStream`], which claims
+/// and configures it and receives.
 ///
-/// Neither is closed before the other is open: the modem lines rise once, which may reset a board.
+/// Neither closes before the other is open: the modem lines rise only once, because that may reset a board.
 fn claim(address: &Address, path: &Path, baud: u32) -> Result<(OwnedFd, SerialStream), LinkError> {
     let refused = |errno| refusal(address, path, baud, errno);
     let port = ask(path).map_err(refused)?;
     let builder = tokio_serial::new(path.to_string_lossy(), baud);
     let stream = builder.open_native_async().map_err(|error| match error.kind() {
-        // All that it says of a port that another has claimed since we asked.
+        // Its only error for a port that another program has claimed since our query.
         ErrorKind::NoDevice => refused(Errno::BUSY),
         _ => match set_speed(&port, baud) {
             Err(errno) => refused(errno),
@@ -92,16 +92,16 @@ fn claim(address: &Address, path: &Path, baud: u32) -> Result<(OwnedFd, SerialSt
             },
         },
     })?;
-    // Forgets what came before; a port that cannot has nothing to forget.
+    // Discards earlier input; a port that cannot has none.
     let _ = stream.clear(ClearBuffer::All);
     Ok((port, stream))
 }
 
-/// Opens a port and asks for what [`SerialStream`] would not tell: why it cannot be opened, whether
-/// it is a terminal, whether another has it.
+/// Opens a port and finds what [`SerialStream`] would not report: why it does not open, whether it is a terminal,
+/// whether another program has it.
 ///
-/// That has to come first: in the hands of root, who passes `TIOCEXCL`, a failed attempt of
-/// [`SerialStream`] takes away the claim of the one who holds the port.
+/// This must come first: if root, who passes `TIOCEXCL`, fails to open a [`SerialStream`], that removes the claim
+/// of the program that holds the port.
 fn ask(path: &Path) -> Result<OwnedFd, Errno> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let port = rustix::fs::open(path, flags, Mode::empty())?;
@@ -115,14 +115,14 @@ fn ask(path: &Path) -> Result<OwnedFd, Errno> {
     }
 }
 
-/// What would be in the way of a speed.
+/// Checks that the port supports a speed.
 fn set_speed(port: &OwnedFd, baud: u32) -> Result<(), Errno> {
     let mut modes = tcgetattr(port)?;
     modes.set_speed(baud)?;
     tcsetattr(port, OptionalActions::Now, &modes)
 }
 
-/// What the user should know of how the port was set up.
+/// What the user should know about the port's setup.
 fn notices(path: &Path, baud: u32, port: &OwnedFd, stream: &SerialStream) -> Vec<String> {
     let mut notices = Vec::new();
     let device = path.display();
@@ -133,7 +133,7 @@ fn notices(path: &Path, baud: u32, port: &OwnedFd, stream: &SerialStream) -> Vec
     }
     match os::set_low_latency(port) {
         Ok(()) => {}
-        // Most drivers have no such setting because they never hold anything back.
+        // Most drivers lack this setting because they never hold anything back.
         Err(error) if error.kind() == io::ErrorKind::Unsupported => {}
         Err(error) => notices
             .push(format!("cannot set low latency on {device}: {error}; replies may be up to 16 ms late")),
@@ -161,8 +161,8 @@ impl Serial {
         os::unsent(&*self.plug).ok()
     }
 
-    /// Waits, up to a second, until the port has sent what it holds, and drops the rest: the
-    /// kernel itself would wait for thirty.
+    /// Waits up to a second until the port has sent what it holds, then drops the rest: the kernel itself would
+    /// wait for thirty seconds.
     pub(super) async fn close(self) {
         for _ in 0..200 {
             if self.queued().unwrap_or(0) == 0 {
@@ -174,8 +174,7 @@ impl Serial {
     }
 }
 
-/// The receiving side, which also sees to it that a port that was pulled out is found again. Nobody else ever locks
-/// the stream.
+/// The receiving side. It also finds an unplugged port again. Nobody else locks the stream.
 pub(super) struct In {
     plug: Arc<Plug>,
     stream: Arc<Mutex<Option<SerialStream>>>,
@@ -190,7 +189,7 @@ impl In {
         loop {
             let Some(port) = stream.as_mut().filter(|_| !self.plug.is_out()) else {
                 self.plug.pull();
-                // Nobody may hold the old one when the port comes back.
+                // Release the old descriptor before the port comes back.
                 *stream = None;
                 *stream = Some(found_again(&self.plug, &self.address, &self.path, self.baud).await);
                 continue;
@@ -198,18 +197,18 @@ impl In {
             match tokio::time::timeout(LOOK, read(port, buffer)).await {
                 Ok(Ok(0) | Err(_)) if self.plug.has_gone() => self.plug.pull(),
                 Ok(answer) => return answer,
-                // A look at the plug.
+                // Time to check the plug.
                 Err(_) => {}
             }
         }
     }
 }
 
-/// Waits until the port is back, and puts it in the place of the old one.
+/// Waits until the port is back, and replaces the old one.
 async fn found_again(plug: &Plug, address: &Address, path: &Path, baud: u32) -> SerialStream {
     loop {
         tokio::time::sleep(AGAIN).await;
-        // Not there yet, or not yet ours: its rights are set a moment after it appears.
+        // It is not there yet, or not yet accessible: its permissions are set a moment after it appears.
         if let Ok((port, stream)) = claim(address, path, baud) {
             let _ = os::set_low_latency(&port);
             if plug.put_in(&port).is_ok() {
@@ -219,7 +218,7 @@ async fn found_again(plug: &Plug, address: &Address, path: &Path, baud: u32) -> 
     }
 }
 
-/// What the system's answer means to the user.
+/// The meaning of a system error for the user.
 fn refusal(address: &Address, path: &Path, baud: u32, errno: Errno) -> LinkError {
     let link = address.to_string();
     let path = path.to_owned();
@@ -235,7 +234,7 @@ fn refusal(address: &Address, path: &Path, baud: u32, errno: Errno) -> LinkError
     }
 }
 
-/// What would let this user open a device.
+/// How this user gets permission for a device.
 fn remedy(path: &Path) -> String {
     let group = fs::metadata(path)
         .ok()
@@ -251,7 +250,7 @@ fn remedy(path: &Path) -> String {
     }
 }
 
-/// The name of a group in the text of `/etc/group`.
+/// The name of a group, from the text of `/etc/group`.
 fn group_name(groups: &str, id: u32) -> Option<String> {
     groups.lines().find_map(|line| {
         let mut fields = line.split(':');
@@ -260,10 +259,10 @@ fn group_name(groups: &str, id: u32) -> Option<String> {
     })
 }
 
-/// Where the system shows its terminals.
+/// Where the system lists its terminals.
 const TERMINALS: &str = "/sys/class/tty";
 
-/// The file and the value, in ms, of an FTDI adapter's latency timer: the driver shows it with the port, some
+/// The file and the value, in ms, of an FTDI adapter's latency timer. The driver lists it with the port, some
 /// versions with the USB interface above it.
 fn latency_timer(terminals: &Path, path: &Path) -> Option<(PathBuf, u32)> {
     let device = terminals.join(fs::canonicalize(path).ok()?.file_name()?).join("device");

@@ -1,4 +1,4 @@
-//! One kind of link as users write it.
+//! The spelling of one kind of link.
 
 use super::address::Address;
 use super::problem::Problem;
@@ -6,12 +6,12 @@ use super::problem::Problem;
 /// One way to spell a link.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme {
-    /// What stands before the first colon.
+    /// The text before the first colon.
     pub name: &'static str,
-    /// How a whole address looks.
+    /// The pattern of a whole address.
     pub spelling: &'static str,
-    /// What it is, in one line.
+    /// Its description in one line.
     pub about: &'static str,
-    /// Reads what stands after the first colon; `None` where there is no colon.
+    /// Parses the text after the first colon; `None` where there is no colon.
     pub(super) parse: fn(Option<&str>) -> Result<Address, Problem>,
 }

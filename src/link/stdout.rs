@@ -1,7 +1,7 @@
-//! Standard output: the bytes into a pipe, a file or a terminal.
+//! Standard output: bytes into a pipe, a file or a terminal.
 //!
-//! Its descriptor may be shared with other processes, so it is left blocking; it is asked first
-//! whether it takes bytes, and given no more than a pipe takes without blocking.
+//! Other processes may share its descriptor, so it stays blocking. The link first polls whether it accepts bytes,
+//! and writes no more than a pipe takes without blocking.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -27,7 +27,7 @@ fn parse(rest: Option<&str>) -> Result<Address, Problem> {
     }
 }
 
-/// What a pipe that takes anything takes without blocking (`PIPE_BUF`).
+/// What a writable pipe takes without blocking (`PIPE_BUF`).
 const PIECE: usize = 4096;
 
 pub(super) fn open(address: &Address) -> Result<Link, LinkError> {
@@ -47,7 +47,7 @@ fn sender(output: impl AsFd) -> io::Result<Sender> {
     })
 }
 
-/// A pipe, or whatever else may block.
+/// A pipe, or another file that may block.
 struct Pipe(File);
 
 impl Out for Pipe {

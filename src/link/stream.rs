@@ -5,10 +5,10 @@ use bytes::{BufMut, BytesMut};
 use std::io;
 use tokio::io::{AsyncRead, AsyncReadExt};
 
-/// The most that one read takes.
+/// The most that one read returns.
 const ROOM: usize = 4096;
 
-/// Reads from a stream when it has something; 0 when it has ended or broken.
+/// Reads from a stream when it has data; 0 when it has ended or failed.
 pub(super) async fn read(stream: &mut (impl AsyncRead + Unpin), buffer: &mut BytesMut) -> io::Result<usize> {
     loop {
         buffer.reserve(ROOM);

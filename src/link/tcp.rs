@@ -20,7 +20,7 @@ use super::stream::read;
 use super::{Kind, Link, LinkError};
 use crate::os;
 
-/// The listening line in the table of links.
+/// Its listening line in the table of links.
 pub(super) const SCHEME_IN: Scheme = Scheme {
     name: "tcpin",
     spelling: "tcpin:[ADDR:]PORT",
@@ -28,7 +28,7 @@ pub(super) const SCHEME_IN: Scheme = Scheme {
     parse: parse_in,
 };
 
-/// The connecting line in the table of links.
+/// Its connecting line in the table of links.
 pub(super) const SCHEME_OUT: Scheme = Scheme {
     name: "tcpout",
     spelling: "tcpout:ADDR:PORT",
@@ -44,7 +44,7 @@ fn parse_out(rest: Option<&str>) -> Result<Address, Problem> {
     endpoint::destination("tcpout", rest).map(Address::TcpOut)
 }
 
-/// A peer that has not answered in this time will not.
+/// Timeout for a connection.
 const CONNECT: Duration = Duration::from_secs(10);
 
 /// An open TCP link.
@@ -93,15 +93,15 @@ impl Tcp {
         self.0.connected().await.map(drop)
     }
 
-    /// Bytes that the peer has not confirmed.
+    /// Bytes that the peer has not acknowledged.
     pub(super) fn queued(&self) -> Option<usize> {
         os::unsent(self.0.stream.get()?).ok()
     }
 
-    /// Says that nothing more comes, and waits up to a second until the peer has it all.
+    /// Shuts down the sending direction, and waits up to a second until the peer has everything.
     ///
-    /// What the peer still sends is read and dropped: closing with bytes unread would reset the
-    /// connection and could take our last packets with it.
+    /// It reads and drops what the peer still sends: a close with unread bytes would reset the connection and could
+    /// lose our last packets.
     pub(super) async fn close(self) {
         let Some(mut stream) = self.0.stream.get() else {
             return;
@@ -124,12 +124,12 @@ impl Tcp {
 }
 
 impl Way {
-    /// The connection, waited for where there is none yet. Cancelling it loses nothing.
+    /// The connection; waits for it if there is none yet. Cancelling it loses nothing.
     async fn connected(&self) -> io::Result<&TcpStream> {
         self.stream.get_or_try_init(|| self.accept()).await
     }
 
-    /// Takes the first peer that connects, and turns all others away.
+    /// Accepts the first peer that connects, and rejects all others.
     async fn accept(&self) -> io::Result<TcpStream> {
         let mut listener = self.listener.lock().await;
         let Some(open) = listener.as_ref() else {
@@ -138,7 +138,7 @@ impl Way {
         let stream = loop {
             match open.accept().await {
                 Ok((stream, _)) => break stream,
-                // It left again before it was seen.
+                // It disconnected before it was accepted.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
                 Err(error) => return Err(error),
             }
@@ -148,7 +148,7 @@ impl Way {
     }
 }
 
-/// A connection that the pacing thread can write to by itself, each packet at once.
+/// A connection that the pacing thread writes to directly, each packet at once.
 fn plain(stream: tokio::net::TcpStream) -> io::Result<TcpStream> {
     stream.set_nodelay(true)?;
     stream.into_std()
@@ -173,7 +173,7 @@ impl Out for Segments {
 /// The receiving side.
 pub(super) struct In {
     way: Arc<Way>,
-    /// The same connection, for waiting.
+    /// The same connection, for polling.
     stream: Option<tokio::net::TcpStream>,
 }
 

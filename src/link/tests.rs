@@ -1,6 +1,6 @@
-//! What every link must do, whatever its kind.
+//! Behaviour that every kind of link must have.
 //!
-//! No test measures wall time; [`soon`] only keeps a broken one from hanging.
+//! No test measures wall time; [`soon`] only stops a broken one from hanging.
 
 use std::fs::{File, OpenOptions};
 use std::future::Future;
@@ -28,7 +28,7 @@ async fn open(spelled: &str) -> Link {
     soon(Link::open(&address)).await.unwrap()
 }
 
-/// Waits until nobody has the link open any more.
+/// Waits until nobody has the link open.
 async fn left(link: &Link) {
     let gone = async {
         while link.peer_is_present() {
@@ -44,11 +44,11 @@ async fn refusal(spelled: &str) -> String {
     refused.err().expect("it opened").to_string()
 }
 
-/// The other side of a link, as a program on the far end would hold it.
+/// The other side of a link, as a program at the far end holds it.
 struct Far {
     read: Box<dyn Read + Send>,
     write: Box<dyn Write + Send>,
-    /// Whatever else keeps the far end alive.
+    /// Other descriptors that keep the far end alive.
     _alive: Vec<OwnedFd>,
 }
 
@@ -68,13 +68,13 @@ impl Far {
     }
 }
 
-/// A pty's slave, opened as a firmware opens its port.
+/// A pty's slave, opened the way a firmware opens its port.
 fn slave(path: impl AsRef<Path>) -> File {
     use std::os::unix::fs::OpenOptionsExt;
     OpenOptions::new().read(true).write(true).custom_flags(libc::O_NOCTTY).open(path).unwrap()
 }
 
-/// A pty that is not ours, as a stand-in for a serial port: its master and its slave's path.
+/// The master and the slave's path of an independent pty, as a stand-in for a serial port.
 fn port() -> (OwnedFd, String) {
     let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
     let master = openpt(flags).unwrap();
@@ -83,7 +83,7 @@ fn port() -> (OwnedFd, String) {
     (master, path.into_string().unwrap())
 }
 
-/// Every stream, opened and met.
+/// Every stream, opened and connected.
 async fn streams() -> Vec<(&'static str, Link, Far)> {
     let pty = open("pty").await;
     let reader = Far::slave(pty.name());
@@ -114,12 +114,12 @@ async fn streams() -> Vec<(&'static str, Link, Far)> {
     all
 }
 
-/// Bytes in which a hole or a swap shows.
+/// Bytes in which a hole or a swap is visible.
 fn pattern(count: usize) -> Vec<u8> {
     (0..count).map(|i| (i ^ (i >> 8) ^ (i >> 16)) as u8).collect()
 }
 
-/// A reader that takes its time: every byte, in small pieces, with rests.
+/// A slow reader: reads every byte, in small pieces, with pauses.
 fn read_slowly(mut far: impl Read + Send + 'static, count: usize) -> thread::JoinHandle<Vec<u8>> {
     thread::spawn(move || {
         let mut all = vec![0; count];
@@ -202,7 +202,7 @@ async fn a_link_that_nobody_reads_is_full_and_loses_no_packet_it_took() {
 #[tokio::test]
 async fn a_peer_that_leaves_is_gone_on_a_connection() {
     for (kind, mut link, far) in streams().await {
-        // A reader may come to a pty, and a port be plugged in again.
+        // A reader may open a pty, and a port may be plugged in again.
         if ["pty", "serial"].contains(&kind) {
             continue;
         }
@@ -231,7 +231,7 @@ async fn a_pty_starts_only_after_a_reader_has_opened_it() {
     assert!(nobody.is_err(), "it started with nobody there");
     assert!(!link.peer_is_present());
 
-    // One who only sets it up and leaves is no reader.
+    // A program that only configures the port and leaves is no reader.
     drop(slave(&path));
     let nobody = tokio::time::timeout(Duration::from_millis(250), link.peer()).await;
     assert!(nobody.is_err(), "it started for one who had left");
@@ -279,7 +279,7 @@ async fn a_pty_is_revived_by_a_reader_that_opens_its_path_again() {
     let mut sender = link.sender();
     for round in 0..3_u8 {
         let mut reader = slave(&path);
-        // As a client that claims its port, and dies with it.
+        // Like a client that claims its port and dies with it.
         rustix::termios::ioctl_tiocexcl(&reader).unwrap();
         soon(link.peer()).await.unwrap();
         assert_eq!(sender.send(&[round; 50]), Sent::Done);
@@ -350,7 +350,7 @@ async fn udp_sends_to_one_place_and_hears_its_answers() {
     assert_eq!(&received[..], b"onetwo");
 }
 
-/// A datagram a packet, in order; where they came from.
+/// Sends datagrams, one for each packet and in order; returns their source.
 fn exchange(sender: &mut Sender, far: &UdpSocket) -> std::net::SocketAddr {
     let stop = AtomicBool::new(false);
     let mut from = None;
@@ -403,7 +403,7 @@ async fn tcp_starts_only_after_a_peer_has_connected_and_takes_no_other() {
     let mut client = TcpStream::connect(&name).unwrap();
     client.write_all(b"hello").unwrap();
     let mut received = BytesMut::new();
-    // The receiver may well be the one who meets the peer.
+    // The receiver may be the half that accepts the peer.
     assert_eq!(soon(receiver.recv(&mut received)).await.unwrap(), 5);
     soon(link.peer()).await.unwrap();
     assert!(TcpStream::connect(&name).is_err());
@@ -513,7 +513,7 @@ async fn a_stopped_sender_leaves_no_packet_cut() {
         }
         (sender, taken)
     });
-    // It fills up, and waits there until told.
+    // It fills up, and waits until told to stop.
     thread::sleep(Duration::from_millis(100));
     stop.store(true, Ordering::Relaxed);
     let (mut sender, taken) = writer.join().unwrap();
@@ -540,7 +540,7 @@ async fn a_busy_port_names_who_holds_it() {
     assert!(text.contains(&format!("this program (process {})", std::process::id())), "{text}");
     drop(first);
 
-    // A receiver that is dropped gives nothing back.
+    // A dropped receiver does not release the port.
     let mut first = open(&spelled).await;
     drop(first.receiver());
     let text = refusal(&spelled).await;
@@ -548,7 +548,7 @@ async fn a_busy_port_names_who_holds_it() {
     drop(first);
     drop(open(&spelled).await);
 
-    // `flock` holds what it locked for as long as it runs its command.
+    // `flock` holds its lock while its command runs.
     let mut holder = Command::new("flock")
         .args(["--nonblock", &path, "sh", "-c", "echo locked; exec cat"])
         .stdin(Stdio::piped())

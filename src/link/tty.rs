@@ -1,4 +1,4 @@
-//! What a pty and a serial port have in common: bytes into a terminal.
+//! Shared by a pty and a serial port: bytes into a terminal.
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
@@ -19,7 +19,7 @@ impl Out for Terminal {
     }
 }
 
-/// The error of a terminal that is no longer there gets a name that says so.
+/// Gives the error of a terminal that is gone a clear name.
 pub(super) fn lost(error: io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(libc::EIO | libc::ENXIO | libc::ENODEV) => io::ErrorKind::NotConnected.into(),

@@ -1,14 +1,14 @@
-//! A UART's time on a pty, which has none of its own: bytes reach the reader as a line at a baud rate would bring
-//! them.
+//! Emulates a UART on a pty, which has no baud rate of its own: bytes reach the reader as they would over a line at
+//! a baud rate.
 //!
 //! ```text
 //! pacing thread ─▶ transmit buffer, 4096 bytes ─▶ FIFO, up to 64 bytes ─▶ line: 10 bits a byte ─▶ reader
 //! ```
 //!
-//! The buffer is as large as a serial driver's (Linux: a page). Once it is full the sender is told so, and whoever
-//! sends decides what is lost. A thread takes bytes out of it a FIFO at a time and hands them over when the last
-//! stop bit of them would be over: a reader gets interrupts of a UART so, and the last byte of a packet comes when
-//! it would. A reader that does not read holds the line up, as one that takes its CTS away: nothing is lost here.
+//! The buffer is as large as a serial driver's (Linux: a page). When it is full the sender learns so and decides
+//! what to drop. A thread takes bytes from it one FIFO at a time and hands them over when their last stop bit would
+//! end: a reader gets a UART's interrupts like that, and the last byte of a packet arrives on time. A reader that
+//! does not read stops the line, as if it dropped CTS: nothing is lost here.
 
 use super::baud::BITS_PER_BYTE;
 use super::sender::{Carry, Out, Sender};
@@ -23,16 +23,16 @@ use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::thread::{self, JoinHandle, Thread};
 use std::time::Duration;
 
-/// What the transmit buffer holds, bytes.
+/// Capacity of the transmit buffer, bytes.
 pub(super) const BUFFER: usize = 4096;
-/// A UART works without the processor: where that is allowed its thread goes before ordinary work.
+/// A UART works without the processor, so its thread gets priority over ordinary work where that is allowed.
 const PRIORITY: i32 = 45;
-/// A thread that nobody wakes looks up this often.
+/// A thread without a wake-up looks this often.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Bytes that are handed over together: none waits for another at the speeds of an 8250; then the FIFO of a 16550;
-/// and from 230 400 baud up that of a 16750, which is also a packet of full-speed USB, so that there is never much
-/// more than a wake-up in a quarter of a millisecond.
+/// The number of bytes handed over together. At the speeds of an 8250, one, so that no byte waits for another; then
+/// the FIFO of a 16550; from 230 400 baud up the FIFO of a 16750, which is also a packet of full-speed USB. There
+/// is then never much more than one wake-up in a quarter of a millisecond.
 fn fifo(baud: u32) -> usize {
     match baud {
         ..1200 => 1,
@@ -41,15 +41,15 @@ fn fifo(baud: u32) -> usize {
     }
 }
 
-/// What the pacing thread, the line and the control side know of one another.
+/// State that the pacing thread, the line and the control side share.
 struct Line {
     baud: u32,
     /// Bytes put into the buffer, and bytes handed to the reader.
     taken: AtomicU64,
     delivered: AtomicU64,
-    /// When bytes last came into an empty buffer, ns on the line's clock.
+    /// When bytes last entered an empty buffer, ns on the line's clock.
     woken_ns: AtomicI64,
-    /// Ends the line whatever it still holds.
+    /// Ends the line, whatever it still holds.
     stop: AtomicBool,
 }
 
@@ -68,10 +68,10 @@ pub(super) struct Uart {
 }
 
 impl Uart {
-    /// Starts the line in front of `master`; the sender ends it by being dropped.
+    /// Starts the line in front of `master`; dropping the sender ends it.
     pub(super) fn start(baud: u32, master: Arc<OwnedFd>) -> io::Result<(Uart, Sender)> {
         let (producer, consumer) = RingBuffer::new(BUFFER);
-        // It sleeps and never spins: a wake-up that is late delays a FIFO's worth of bytes and shifts nothing.
+        // It sleeps and never spins: a late wake-up delays at most one FIFO of bytes, and delays do not accumulate.
         let clock = WallClock::start();
         let line = Arc::new(Line {
             baud,
@@ -91,7 +91,7 @@ impl Uart {
         Ok((Uart { line, thread }, Sender::new(buffer, Carry::packet())))
     }
 
-    /// What it does, in a sentence.
+    /// What it does, in one sentence.
     pub(super) fn notice(&self, name: &str) -> String {
         let baud = self.line.baud;
         format!(
@@ -105,8 +105,8 @@ impl Uart {
         usize::try_from(self.line.held()).unwrap_or(usize::MAX)
     }
 
-    /// Waits until the line has sent what it holds, for as long as bytes move at least once a second. Drop the
-    /// sender first.
+    /// Waits until the line has sent what it holds, as long as bytes move at least once a second. Drop the sender
+    /// first.
     pub(super) async fn close(&self) {
         const PAUSE: Duration = Duration::from_millis(5);
         let (mut held, mut still) = (self.line.held(), 0);
@@ -141,12 +141,12 @@ impl Out for Buffer {
             return Err(io::ErrorKind::WouldBlock.into());
         }
         if room == BUFFER {
-            // An idle line begins with the first bit when the bytes come, not when its thread has woken up.
+            // An idle line starts its first bit when the bytes arrive, not when its thread wakes.
             self.line.woken_ns.store(self.clock.now(), Ordering::Release);
         }
         let (taken, _) = self.producer.push_partial_slice(bytes);
         self.line.taken.fetch_add(taken.len() as u64, Ordering::AcqRel);
-        // A wake-up of a sleeper is one system call and takes no lock; to one awake it is a store.
+        // Waking a sleeping thread is one system call without a lock; for a running one it is a store.
         self.thread.unpark();
         Ok(taken.len())
     }
@@ -162,7 +162,7 @@ impl Drop for Buffer {
     }
 }
 
-/// When bytes leave a line, exactly: counted from when it last stood idle, never accumulated.
+/// Exact times at which bytes leave a line, counted from its last idle time and never accumulated.
 #[derive(Debug)]
 struct Bits {
     baud: u32,
@@ -173,13 +173,13 @@ struct Bits {
 }
 
 impl Bits {
-    /// When the last stop bit of what was sent so far is over, ns.
+    /// When the last stop bit sent so far ends, ns.
     fn free(&self) -> i64 {
         let bits = i128::from(self.bytes) * i128::from(BITS_PER_BYTE);
         self.begun + (bits * 1_000_000_000 / i128::from(self.baud)) as i64
     }
 
-    /// Sends `count` bytes that are there since `since`: when they are over, ns.
+    /// Sends `count` bytes that have been available since `since`; returns when they end, ns.
     fn send(&mut self, since: i64, count: usize) -> i64 {
         if since > self.free() {
             self.restart(since);
@@ -188,13 +188,13 @@ impl Bits {
         self.free()
     }
 
-    /// Nothing was on the line until `now`.
+    /// Marks the line as idle until `now`.
     fn restart(&mut self, now: i64) {
         (self.begun, self.bytes) = (now, 0);
     }
 }
 
-/// Takes bytes out of the buffer in the time of a line.
+/// Takes bytes from the buffer at the speed of a line.
 struct Shifter<C> {
     clock: C,
     buffer: Consumer<u8>,
@@ -208,12 +208,12 @@ impl<C: Clock> Shifter<C> {
         Self { clock, buffer, line, bits }
     }
 
-    /// Works until the sender is gone and the buffer empty, or until told to stop. `hand_over` says whether it had
-    /// to wait for the reader.
+    /// Works until the sender is gone and the buffer empty, or until stopped. `hand_over` returns whether it had to
+    /// wait for the reader.
     fn run(&mut self, mut hand_over: impl FnMut(&[u8]) -> bool) {
         let mut fifo = [0; 64];
         while !self.line.stop.load(Ordering::Acquire) {
-            // Asked first: what was put in before the sender left is then seen.
+            // Check this first: then bytes that the sender added before it left are seen.
             let last = self.buffer.is_abandoned();
             let count = self.load(&mut fifo);
             if count > 0 {
@@ -241,14 +241,14 @@ impl<C: Clock> Shifter<C> {
         let over = self.bits.send(self.line.woken_ns.load(Ordering::Acquire), bytes.len());
         self.clock.wait_until(over);
         if hand_over(bytes) {
-            // The line stood still: it does not make up for it.
+            // The line stood still, and does not catch up.
             self.bits.restart(self.clock.now());
         }
         self.line.delivered.fetch_add(bytes.len() as u64, Ordering::AcqRel);
     }
 }
 
-/// Writes all of `bytes` to the reader, waiting for it; whether it had to.
+/// Writes all of `bytes` to the reader and waits for it; returns whether it had to wait.
 fn hand_over(master: &OwnedFd, mut bytes: &[u8], stop: &AtomicBool) -> bool {
     let mut waited = false;
     while !bytes.is_empty() && !stop.load(Ordering::Acquire) {
@@ -276,7 +276,7 @@ mod tests {
     use super::*;
     use crate::clock::VirtualClock;
 
-    /// A line on a virtual clock with these bytes in its buffer since `woken_ns`, and nobody to add more.
+    /// A line on a virtual clock with this many bytes in its buffer since `woken_ns`, and no sender.
     fn line(baud: u32, woken_ns: i64, bytes: usize) -> Shifter<VirtualClock> {
         let (mut producer, consumer) = RingBuffer::new(BUFFER);
         assert_eq!(producer.push_partial_slice(&vec![7; bytes]).0.len(), bytes);
@@ -336,7 +336,7 @@ mod tests {
             && let count @ 1.. = shifter.load(&mut fifo)
         {
             if ends.len() == 2 {
-                // As a reader that kept the line waiting with the bytes before.
+                // As after a reader that delayed the previous bytes.
                 shifter.clock.wait_until(1_000_000_000);
                 shifter.bits.restart(1_000_000_000);
             }
@@ -399,7 +399,7 @@ mod tests {
 
     #[tokio::test]
     async fn what_a_line_has_not_sent_is_seen_and_a_full_buffer_takes_nothing() {
-        // Ten bytes a second: nothing of note leaves during the test.
+        // Ten bytes a second: almost nothing leaves during the test.
         let mut link = crate::link::Link::open(&"pty,100".parse().unwrap()).await.unwrap();
         let mut sender = link.sender();
         let mut taken = 0;
@@ -407,7 +407,7 @@ mod tests {
             taken += 64;
         }
         assert!((BUFFER..=BUFFER + 2 * 64).contains(&taken), "{taken}");
-        // A byte is on the line, and the last packet may have been cut.
+        // One byte is on the line, and the last packet may have gone in part.
         let queued = link.queued().unwrap();
         assert!((BUFFER - 1..=BUFFER + 64).contains(&queued), "{queued}");
     }

@@ -18,7 +18,7 @@ use super::sender::{Carry, Out, Sender};
 use super::spelling::Scheme;
 use super::{Kind, Link, LinkError};
 
-/// The listening line in the table of links.
+/// Its listening line in the table of links.
 pub(super) const SCHEME_IN: Scheme = Scheme {
     name: "udpin",
     spelling: "udpin:[ADDR:]PORT",
@@ -26,7 +26,7 @@ pub(super) const SCHEME_IN: Scheme = Scheme {
     parse: parse_in,
 };
 
-/// The sending line in the table of links.
+/// Its sending line in the table of links.
 pub(super) const SCHEME_OUT: Scheme = Scheme {
     name: "udpout",
     spelling: "udpout:ADDR:PORT",
@@ -48,11 +48,11 @@ const LONGEST: usize = 65_536;
 /// An open UDP link.
 pub(super) struct Udp(Arc<Way>);
 
-/// The socket, and where it sends once that is known.
+/// The socket, and its destination once known.
 struct Way {
-    /// For the pacing thread, which knows nothing of the executor.
+    /// For the pacing thread, which does not use the executor.
     plain: UdpSocket,
-    /// The same socket, for waiting.
+    /// The same socket, for polling.
     socket: tokio::net::UdpSocket,
     peer: OnceCell<SocketAddr>,
 }
@@ -101,8 +101,8 @@ impl Udp {
 }
 
 impl Way {
-    /// Where packets go: who sends first, where nobody was named. Cancelling it loses nothing, and
-    /// that first datagram is still there to be received.
+    /// The destination: the first sender, if none was named. Cancelling it loses nothing, and that first datagram
+    /// remains to be received.
     async fn known(&self) -> io::Result<SocketAddr> {
         let first = || async {
             let mut peeked = [0];
@@ -133,7 +133,7 @@ impl Out for Datagrams {
 pub(super) struct In(Arc<Way>);
 
 impl In {
-    /// One datagram of the peer's; those of others are dropped.
+    /// One datagram from the peer; drops those of others.
     pub(super) async fn recv(&mut self, buffer: &mut BytesMut) -> io::Result<usize> {
         let peer = self.0.known().await?;
         loop {
@@ -148,8 +148,7 @@ impl In {
     }
 }
 
-/// Whether `sender` may speak for `peer`: many hosts answer a broadcast, and a peer may answer from
-/// another of its ports.
+/// Whether `sender` counts as `peer`: many hosts answer a broadcast, and a peer may answer from another port.
 fn from_peer(peer: SocketAddr, sender: SocketAddr) -> bool {
     let many = match peer.ip() {
         IpAddr::V4(ip) => ip.is_broadcast() || ip.is_multicast() || ip.octets()[3] == 255,

@@ -1,4 +1,4 @@
-//! Who comes and goes on the slave of a pty, seen by `inotify`.
+//! Detects readers that open and close the slave of a pty, with `inotify`.
 
 use std::io;
 use std::mem::MaybeUninit;
@@ -16,7 +16,7 @@ use tokio::task::AbortHandle;
 use super::holders::times_open;
 use crate::os::Readable;
 
-/// Many clients discard what arrived before they opened; by then they have.
+/// Many clients discard what arrived before they opened the port; by then they have done so.
 const SETTLE: Duration = Duration::from_millis(100);
 
 /// How often the slave was opened and closed since it was published.
@@ -34,7 +34,7 @@ pub(super) struct Visitors {
 }
 
 impl Visitors {
-    /// Watches `device` from now on; `slave` is the one descriptor of it that is our own.
+    /// Watches `device` from now on; `slave` is our own only descriptor of it.
     pub(super) fn watch(device: &Path, slave: Arc<OwnedFd>) -> io::Result<Self> {
         let events = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         inotify::add_watch(&events, device, WatchFlags::OPEN | WatchFlags::CLOSE)?;
@@ -46,8 +46,8 @@ impl Visitors {
 
     /// Whether somebody has the slave open.
     ///
-    /// The kernel may report two openings in a row as one, so when the counts say that all have
-    /// left, the processes themselves are asked.
+    /// The kernel may merge two openings in a row into one event. When the counts say that all have left, this asks
+    /// the processes themselves.
     pub(super) fn present(&self) -> bool {
         let seen = *self.seen.borrow();
         seen.opened > seen.closed || seen.opened > 0 && times_open(&self.device) > 1
@@ -60,7 +60,7 @@ impl Visitors {
 
     /// Waits until somebody has had the slave open for 100 ms.
     ///
-    /// One who opens it and leaves (`stty -F`) does not count. Cancelling it loses nothing.
+    /// A process that opens it and leaves (`stty -F`) does not count. Cancelling it loses nothing.
     pub(super) async fn arrival(&mut self) {
         loop {
             let before = *self.seen.borrow_and_update();
@@ -70,7 +70,7 @@ impl Visitors {
                     return;
                 }
             } else if self.seen.changed().await.is_err() {
-                // The watch is over, and so are arrivals: only the caller's own limit ends this.
+                // The watch is over and no reader will be seen: only the caller's timeout ends this.
                 std::future::pending::<()>().await;
             }
         }
@@ -83,10 +83,10 @@ impl Drop for Visitors {
     }
 }
 
-/// Counts openings and closings for as long as the link lives.
+/// Counts openings and closings for the life of the link.
 ///
-/// A reader may claim the slave for itself (`TIOCEXCL`) and die without giving it back, which would
-/// keep the next one out while we hold the slave: each closing gives it back.
+/// A reader may claim the slave (`TIOCEXCL`) and die without releasing it, which would lock out the next reader
+/// while we hold the slave. So each closing releases it.
 async fn count(events: Readable, tell: watch::Sender<Seen>, slave: Arc<OwnedFd>) {
     while let Ok(news) = events.read(drain).await {
         if news.closed > 0 {
@@ -99,7 +99,7 @@ async fn count(events: Readable, tell: watch::Sender<Seen>, slave: Arc<OwnedFd>)
     }
 }
 
-/// However it had been opened.
+/// A close event, for any mode of opening.
 const CLOSED: ReadFlags = ReadFlags::CLOSE_WRITE.union(ReadFlags::CLOSE_NOWRITE);
 
 /// The events that wait to be read.

@@ -1,4 +1,5 @@
-//! Barometer and GPS receiver: closed forms of what is true, statistics of what is read, and that nobody else notices.
+//! Barometer and GPS receiver: closed forms of the truth, statistics of the readings, and no effect on other
+//! sensors.
 
 use super::*;
 use crate::earth::{self, Place};
@@ -37,7 +38,7 @@ fn true_fix(reading: &Reading) -> Fix {
 
 const PLACE: &str = "[earth]\nlatitude = \"59.93 deg\"\nlongitude = \"30.31 deg\"\naltitude = \"120 m\"\ndate = \"2026-11-22\"\n";
 
-/// A climb at 5 m/s from 120 m: the standard atmosphere at the altitude then reached, in the weather of the day.
+/// A climb at 5 m/s from 120 m: the standard atmosphere at the altitude reached, in the weather of the day.
 #[test]
 fn pressure_is_the_standard_atmospheres_at_the_altitude() {
     let scene = format!(
@@ -55,7 +56,7 @@ fn pressure_is_the_standard_atmospheres_at_the_altitude() {
     assert_eq!(at_home[0].1.pressure().unwrap().value, 101_325.0);
 }
 
-/// The scene of a still vehicle with every sensor, and noise on each.
+/// A scene of a still vehicle with every sensor, each with noise.
 fn still(aids: &str) -> String {
     format!("seed = 7\nduration = \"2000 s\"\n{PLACE}{aids}")
 }
@@ -71,7 +72,7 @@ fn noise_has_the_spread_asked_for_on_the_axis_asked_for() {
         let spread = |of: &dyn Fn(&Reading) -> f64| {
             libm::sqrt(readings.iter().map(|(_, reading)| of(reading).powi(2)).sum::<f64>() / n)
         };
-        // The standard error of a standard deviation from n is 1/√(2n) of it.
+        // The relative standard error of a standard deviation from n values is 1/√(2n).
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 5.0 / libm::sqrt(2.0 * n);
         for (axis, expected) in order.into_iter().enumerate() {
             let position = spread(&|reading| {
@@ -100,7 +101,7 @@ const INERTIAL: &str = "[gyro]\nrate = \"200 Hz\"\nnoise_std = \"1 deg/s\"\n[acc
 const BARO: &str = "[baro]\nrate = \"25 Hz\"\nnoise_std = \"2 Pa\"\nbias_instability = \"10 Pa\"\ncorrelation_time = \"5 s\"\n";
 const GPS: &str = "[gps]\nnoise_std = \"1 m\"\nbias_instability = \"[1, 1, 2] m\"\ncorrelation_time = \"60 s\"\nvelocity_noise_std = \"0.1 m/s\"\ndelay = \"120 ms\"\n";
 
-/// Readings of one kind; they are written with every digit, so that equal text is equal bits.
+/// Readings of one kind, written with every digit, so that equal text means equal bits.
 fn bits(plan: &Plan, kind: SensorKind, block: usize) -> Vec<(i64, String)> {
     let readings = play(plan, block).into_iter().filter(|(_, reading)| reading.kind == kind);
     readings.map(|(t, reading)| (t.0, format!("{:?}", reading.measurement))).collect()
@@ -117,7 +118,7 @@ fn a_sensor_that_is_added_changes_no_other_reading() {
     }
     let baro = bits(&with_baro, SensorKind::Baro, BLOCK);
     assert!(baro.len() == 750 && baro == bits(&with_both, SensorKind::Baro, BLOCK));
-    // And the negative control: another seed does.
+    // The negative control: another seed changes them.
     let other = plan(&format!("{}{INERTIAL}{BARO}", MOVING.replace("seed = 3", "seed = 4")));
     assert_ne!(baro, bits(&other, SensorKind::Baro, BLOCK));
 }
@@ -131,7 +132,7 @@ fn blocks_of_any_size_give_the_same_bits() {
     }
 }
 
-/// A receiver whose velocity is the derivative of its position, seen a delay ago.
+/// A receiver whose velocity is the derivative of its position, delayed.
 #[test]
 fn a_fix_is_where_the_vehicle_was_a_delay_ago() {
     let quiet = "[gps]\nrate = \"100 Hz\"\ndelay = \"120 ms\"\n";
@@ -151,7 +152,7 @@ fn a_fix_is_where_the_vehicle_was_a_delay_ago() {
         let [(_, a), (_, b), (_, c)] = pair else { panic!("three") };
         let slope = (displacement(c).truth - displacement(a).truth).v / 0.02;
         let velocity = true_fix(b).velocity.v;
-        // h²/6·v″: 10⁻⁴/6 · 20 m/s · (0.28 rad/s)², and half of a force's jump over h.
+        // h²/6·v″: 10⁻⁴/6 · 20 m/s · (0.28 rad/s)², and half of a force's jump times h.
         assert!((slope - velocity).length() < 6e-3, "{slope} against {velocity}");
     }
     assert!(readings.iter().all(|(_, reading)| true_fix(reading).velocity.v.z.abs() < 2.001));
@@ -186,7 +187,7 @@ fn a_receiver_ticks_five_times_a_second_unless_told_otherwise() {
     assert_eq!((here.position, here.velocity), (Place::ORIGIN, Vector::ZERO));
 }
 
-/// 20 m/s at sea level is 245 Pa, ½·1.225·20²; the air thins with altitude, and the wind is in it.
+/// 20 m/s at sea level is 245 Pa, ½·1.225·20²; the air gets thinner with altitude, and the wind counts.
 #[test]
 fn a_pitot_tube_reads_half_rho_v_squared_along_body_x() {
     let read = |scene: &str| {
@@ -198,21 +199,22 @@ fn a_pitot_tube_reads_half_rho_v_squared_along_body_x() {
     };
     let level = "[start]\nvelocity = \"[20, 0, 0] m/s\"\n";
     assert!((read(level).value - 245.0).abs() < 0.01, "{:?}", read(level));
-    // Across, from behind, and at rest.
+    // Crosswind, tailwind, and at rest.
     let heading =
         |deg: f64| format!("[start]\nattitude = \"[0, 0, {deg}] deg\"\nvelocity = \"[20, 0, 0] m/s\"\n");
     assert!(read(&heading(90.0)).value.abs() < 1e-9);
     assert!((read(&heading(180.0)).value + 245.0).abs() < 0.01);
     assert!((read(&heading(60.0)).value - 245.0 / 4.0).abs() < 0.01, "v along x is a half");
     assert_eq!(read("").value, 0.0);
-    // Density: 0.7361 kg/m³ at 5000 m (U.S. Standard Atmosphere, 1976, table I), of a day's pressure in proportion.
+    // Density: 0.7361 kg/m³ at 5000 m (U.S. Standard Atmosphere, 1976, table I), in proportion to the day's
+    // pressure.
     let high = format!(
         "[earth]\nlatitude = \"0 deg\"\nlongitude = \"0 deg\"\naltitude = \"5000 m\"\ndate = \"2026-11-22\"\n{level}"
     );
     assert!((read(&high).value - 0.5 * 0.73643 * 400.0).abs() < 0.01, "{:?}", read(&high));
 }
 
-/// The wind is the air's own velocity: with 8 m/s from ahead, 20 m/s over the ground are 28 through the air.
+/// The wind is the air's own velocity: with 8 m/s of headwind, 20 m/s over the ground are 28 through the air.
 #[test]
 fn wind_is_the_velocity_of_the_air_in_the_scenes_nav_axes() {
     for (axes, start, wind) in [
@@ -230,7 +232,7 @@ fn wind_is_the_velocity_of_the_air_in_the_scenes_nav_axes() {
     }
 }
 
-/// Its errors are those of one number.
+/// It has the error terms of a single number.
 #[test]
 fn a_pitot_tube_has_bias_noise_range_resolution_and_faults() {
     let scene = |keys: &str| {

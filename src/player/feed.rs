@@ -1,4 +1,5 @@
-//! What a sensor is given at its ticks: its error-free reading and, where its terms need it, more of the truth.
+//! The input of a sensor at its ticks: its error-free reading and, where its error terms need it, more of the
+//! truth.
 
 use super::sensed;
 use crate::earth::Place;
@@ -12,7 +13,7 @@ use crate::sensor::{
 use crate::time::SimTime;
 use glam::DVec3;
 
-/// Fills a sensor's blocks from the truth, in order of time.
+/// Fills a sensor's blocks from the truth, in time order.
 #[derive(Debug)]
 pub struct Feed {
     kind: SensorKind,
@@ -20,14 +21,15 @@ pub struct Feed {
     sensing: Sensing,
     force: bool,
     arm: Option<DVec3>,
-    /// The tick before and when it was sensed, for the mean.
+    /// The previous tick and its sensing time, for the mean.
     last: Option<[SimTime; 2]>,
-    /// Of a sensor whose truth is a position.
+    /// For a sensor whose truth is a position.
     aid: Option<Box<Aid>>,
 }
 
 impl Feed {
-    /// For a plan's sensor, before its first tick; `origin` is where the scene begins, `seed` is the scene's.
+    /// The feed of a plan's sensor, before its first tick. `origin` is where the scene begins, `seed` is the
+    /// scene's.
     pub fn new(plan: &SensorPlan, origin: Place, seed: u64, sensor: &Sensor) -> Feed {
         let arm = lever_arm(&plan.values).filter(|_| sensor.needs(Column::LeverArm));
         let sensing = if sensor.needs(Column::Late) { Sensing::of(plan, seed) } else { Sensing::default() };
@@ -36,15 +38,15 @@ impl Feed {
         Feed { kind: plan.kind, sampling: plan.sampling, sensing, force, arm, last: None, aid }
     }
 
-    /// Whether a sample follows from the truth at its tick alone, so that [`Feed::extend`] will do.
+    /// Whether a sample depends only on the truth at its tick, so that [`Feed::extend`] is enough.
     pub(super) fn is_plain(&self) -> bool {
         let at_ticks = self.sampling == Sampling::Point && self.sensing.is_at_ticks();
         at_ticks && self.arm.is_none() && self.aid.is_none()
     }
 
-    /// Adds samples that are the truth at their ticks.
+    /// Adds samples that equal the truth at their ticks.
     pub(super) fn extend<'t>(&self, truth: impl Iterator<Item = &'t Truth> + Clone, block: &mut Block) {
-        // A loop a kind: which field it is, is no question to ask of every sample.
+        // A separate loop for each kind: the choice of the field does not repeat for every sample.
         match self.kind.row().senses {
             Senses::Rate => block.extend(truth.clone().map(|truth| truth.rate)),
             Senses::Force => block.extend(truth.clone().map(|truth| truth.force)),
@@ -56,7 +58,7 @@ impl Feed {
         }
     }
 
-    /// Adds the sample at `t`, at which this is the truth.
+    /// Adds the sample at `t`, where this is the truth.
     pub fn push(&mut self, t: SimTime, truth: &Truth, path: &Trajectory, block: &mut Block) {
         let at = self.sensing.time(t);
         if let Some(aid) = &mut self.aid {
@@ -87,12 +89,12 @@ impl Feed {
     }
 }
 
-/// A sensor that follows from where the vehicle is and how it moves.
+/// A sensor that depends on the vehicle's position and velocity.
 struct Aid {
     origin: Place,
-    /// What it senses of the air; a receiver's own course where there is nothing.
+    /// What it senses of the air; `None` for a receiver, which senses its own course.
     air: Option<Air>,
-    /// At the ticks, and at the times of sensing: each goes forward.
+    /// At the ticks, and at the sensing times: each goes forward.
     now: Option<Track>,
     late: Option<Track>,
 }
@@ -104,7 +106,7 @@ impl std::fmt::Debug for Aid {
 }
 
 impl Aid {
-    /// `None` for a sensor that follows from the truth of an instant.
+    /// `None` for a sensor that depends only on the truth of an instant.
     fn new(plan: &SensorPlan, origin: Place) -> Option<Aid> {
         let air = match plan.kind.row().senses {
             Senses::Rate | Senses::Force | Senses::Field => return None,
@@ -114,7 +116,7 @@ impl Aid {
         Some(Aid { origin, air, now: None, late: None })
     }
 
-    /// Adds the sample of a tick with the attitude then, and what is true at `late`, where it is sensed at another time.
+    /// Adds the sample of a tick with the attitude then, and the truth at `late`, if it is sensed at another time.
     fn push(
         &mut self,
         (t, attitude): (SimTime, Attitude),
@@ -143,11 +145,11 @@ impl Aid {
     }
 }
 
-/// When samples are sensed, which a delay and a clock's jitter put off their ticks.
+/// The sensing times of samples, which a delay and a clock's jitter shift from their ticks.
 #[derive(Debug, Default)]
 struct Sensing {
     delay: SimTime,
-    /// Standard deviation and bound of the jitter, ns, and where it comes from.
+    /// Standard deviation and bound of the jitter, ns, and its random source.
     jitter: Option<(f64, f64, Normals)>,
 }
 
@@ -162,7 +164,7 @@ impl Sensing {
         self.delay == SimTime::ZERO && self.jitter.is_none()
     }
 
-    /// When the sample of the next tick, at `t`, is sensed: never before the start.
+    /// The sensing time of the next tick's sample, at `t`; never before the start.
     fn time(&mut self, t: SimTime) -> SimTime {
         let off = self.jitter.as_mut().map_or(0, |(sigma, bound, normals)| {
             let [n, ..] = normals.draw();
