@@ -1,7 +1,7 @@
-//! The meter on anybody's stream: a simulator's, a real board's, another program's of this name.
+//! A meter for any stream: from a simulator, a real board, or another instance of this program.
 //!
-//! [`Meter`] is the pure core: bytes and when they arrived in, rates, intervals, losses and damage out. [`listen`]
-//! feeds it from a link until the sender leaves, the time is over or the user ends it.
+//! [`Meter`] is the pure core: it turns bytes and their arrival times into rates, intervals, losses and damage.
+//! [`listen`] feeds it from a link until the sender leaves, the time is over or the user stops it.
 //!
 //! ```
 //! use ratetable::{listen::Meter, wire::Protocol};
@@ -32,17 +32,17 @@ use std::time::Duration;
 /// What to listen to.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// What the packets look like.
+    /// The format of the packets.
     pub protocol: Protocol,
-    /// Where they come from.
+    /// Where to receive them.
     pub address: Address,
-    /// For how long from the first bytes on; `None` until the sender leaves.
+    /// How long to listen after the first bytes; `None` until the sender leaves.
     pub span: Option<Duration>,
-    /// How long to wait for the first packet; zero waits without end.
+    /// Timeout for the first packet; zero waits without end.
     pub wait: Duration,
 }
 
-/// What happens meanwhile.
+/// An event while listening.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event<'a> {
@@ -50,73 +50,73 @@ pub enum Event<'a> {
     Notice(String),
     /// The link is open: protocol and what to connect to.
     Ready(&'a str),
-    /// How far it is.
+    /// Progress of the measurement.
     Progress(Progress<'a>),
 }
 
-/// How far it is.
+/// Progress of the measurement.
 #[derive(Debug)]
 pub struct Progress<'a> {
-    /// Since the first bytes.
+    /// Time since the first bytes.
     pub elapsed: Duration,
-    /// What was heard so far.
+    /// What arrived so far.
     pub meter: &'a Meter,
     /// Samples a second of each stream over about the last second, Hz.
     pub rates: &'a [f64],
 }
 
-/// What came of it.
+/// The result.
 #[derive(Debug)]
 pub struct Heard {
-    /// What was opened.
+    /// The name of the opened link.
     pub name: String,
-    /// Whether the user ended it.
+    /// Whether the user stopped it.
     pub interrupted: bool,
     /// Everything counted.
     pub meter: Meter,
 }
 
-/// Why nothing could be heard.
+/// Why the measurement failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ListenError {
-    /// The link could not be opened or broke.
+    /// The link did not open, or failed.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The link cannot bring anything.
+    /// The link cannot receive.
     #[error("nothing comes from {link}: {right}")]
     Mute {
-        /// The link as asked for.
+        /// The requested link.
         link: String,
         /// What would be right.
         right: &'static str,
     },
-    /// Not a byte came.
+    /// No byte arrived.
     #[error("not a byte came from {link} {}: {check}", within(*waited))]
     Silence {
-        /// What was opened.
+        /// The name of the opened link.
         link: String,
-        /// For how long, where it was that which ended it.
+        /// How long it waited, if the timeout ended it.
         waited: Option<Duration>,
-        /// What to look at.
+        /// What to check.
         check: &'static str,
     },
-    /// Bytes came and none of them made a packet.
+    /// Bytes arrived, but no packet.
     #[error("{bytes} bytes came from {link}, and no valid {} packet: {}", protocol.name(), other(*reads_as))]
     Noise {
-        /// What was opened.
+        /// The name of the opened link.
         link: String,
-        /// How many.
+        /// The number of bytes.
         bytes: u64,
-        /// As what they were read.
+        /// The expected protocol.
         protocol: Protocol,
-        /// The protocol that they do read as.
+        /// The protocol that they match.
         reads_as: Option<Protocol>,
     },
-    /// The system refused what listening needs.
+    /// The system refused something that listening needs.
     #[error("could not {doing}: {source}")]
     System {
-        /// What was tried.
+        /// What it tried.
         doing: &'static str,
         /// Why not.
         source: std::io::Error,

@@ -1,9 +1,9 @@
-//! What is true: attitude, angular rate, specific force and field at any time.
+//! The truth: attitude, angular rate, specific force and field at any time.
 //!
 //! A scene's motion is a list of segments. Each is a [`Motion`], evaluated from the segment's own start in closed
-//! form, or where there is none from nodes solved once to 10⁻¹⁰ degrees, and never accumulated from samples: t may be
-//! asked in any order and an hour at full scale loses nothing.
-//! To add a kind: one file beside this one and one line in [`KINDS`].
+//! form, or without one from nodes solved once to 10⁻¹⁰ degrees. Nothing accumulates from samples: any order of t
+//! works, and an hour at full scale loses no accuracy. To add a kind: one file beside this one and one line in
+//! [`KINDS`].
 //!
 //! ```
 //! use ratetable::{scene::Builder, sensor::SensorKind, time::SimTime};
@@ -40,10 +40,10 @@ use std::fmt::Debug;
 
 /// A segment of truth.
 pub trait Motion: Debug + Send + Sync {
-    /// Where the body is `t` seconds after the segment's start, having started at `start`.
+    /// The motion of the body `t` seconds after the segment's start, if it started at `start`.
     fn at(&self, start: Attitude, t: Double) -> Kinematics;
 
-    /// The angular rate, if it is the same throughout.
+    /// The angular rate, if it is constant.
     fn constant_rate(&self) -> Option<Vector<Body>> {
         None
     }
@@ -51,24 +51,24 @@ pub trait Motion: Debug + Send + Sync {
     /// A bound on how fast anything in it changes, rad/s: sets the panels of a mean over an interval.
     fn fastest(&self) -> f64;
 
-    /// The speed over the ground, m/s: 0 for a vehicle that turns where it stands.
+    /// The speed over the ground, m/s: 0 for a vehicle that turns on the spot.
     fn speed(&self) -> f64 {
         0.0
     }
 
-    /// The first time after `t`, both from the segment's start, at which it is not smooth: a mean is taken from one
-    /// to the next.
+    /// The first time after `t`, both from the segment's start, at which it is not smooth: a mean is computed
+    /// between such times.
     fn next_seam(&self, t: SimTime) -> Option<SimTime> {
         let _ = t;
         None
     }
 
-    /// How long it lasts of itself, where its kind [has a length](MotionKind::has_length).
+    /// Its own duration, if its kind [has a length](MotionKind::has_length).
     fn length(&self) -> Option<SimTime> {
         None
     }
 
-    /// The attitude at its start, if it is given and not that at which it finds the vehicle.
+    /// The attitude at its start, if it sets one instead of continuing from the vehicle's.
     fn begins(&self) -> Option<Attitude> {
         None
     }
@@ -79,7 +79,7 @@ pub trait Motion: Debug + Send + Sync {
     }
 }
 
-/// Attitude and what moves it.
+/// The attitude and its motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Kinematics {
     /// Body to nav.
@@ -90,26 +90,26 @@ pub struct Kinematics {
     pub acceleration: Vector<Nav>,
 }
 
-/// What a motion's builder may need besides its own keys.
+/// Inputs for a motion's builder besides the motion's own keys.
 #[derive(Clone, Copy, Debug)]
 pub struct Context {
-    /// How long the segment lasts.
+    /// The duration of the segment.
     pub duration: SimTime,
-    /// Where the motion finds the vehicle.
+    /// The vehicle's attitude when the motion starts.
     pub start: Attitude,
-    /// Whether the scene leaves that open: its first motion may begin elsewhere.
+    /// Whether the scene leaves that attitude open: its first motion may begin elsewhere.
     pub anywhere: bool,
-    /// The scene's seed, from which a random motion comes.
+    /// The scene's seed, for a random motion.
     pub seed: u64,
-    /// Which of the scene's motions it is, from 0: names its streams of random numbers.
+    /// Its index among the scene's motions, from 0: names its streams of random numbers.
     pub index: usize,
     /// The strength of gravity, m/s².
     pub gravity: f64,
-    /// The axes the scene is written in.
+    /// The axes of the scene.
     pub axes: Axes,
 }
 
-/// What a builder makes of a motion's values.
+/// The result of a builder.
 pub type Built = Result<Box<dyn Motion>, KeyError>;
 
 /// A kind of motion: its name, its keys and how to build it.
@@ -121,9 +121,9 @@ pub struct MotionKind {
     pub about: &'static str,
     /// Its keys besides `kind` and `duration`.
     pub keys: &'static [Key],
-    /// Whether it has a length of its own, so that `duration` may be left out.
+    /// Whether it has its own length, so that `duration` may be absent.
     pub has_length: bool,
-    /// From values to a motion.
+    /// Builds a motion from its values.
     pub build: fn(&Values, &Context) -> Built,
 }
 
@@ -139,7 +139,7 @@ pub static KINDS: [&MotionKind; 8] = [
     &replay::KIND,
 ];
 
-/// Standing still, after the last segment and when a scene has no motion.
+/// No motion: after the last segment, and in a scene without motion.
 pub fn rest() -> Box<dyn Motion> {
     Box::new(hold::Hold)
 }
@@ -149,14 +149,14 @@ pub(crate) mod tests {
     use super::*;
     use crate::geometry::log;
 
-    /// The attitude's change over 2h against the rate's integral by Simpson's rule, away from round times, where a
-    /// motion may have a seam: the test every kind of motion passes.
+    /// Compares the attitude's change over 2h with the rate's integral by Simpson's rule, away from round times,
+    /// where a motion may have a seam: a test for every kind of motion.
     pub(crate) fn rate_is_the_derivative_of_attitude(
         motion: &dyn Motion,
         start: Attitude,
         duration: SimTime,
     ) {
-        // 20 µs: rounding leaves ε/h, 10⁻¹¹ rad/s, and what does not commute h²/3·w × w′, 10⁻⁸ of the fastest w here.
+        // 20 µs: rounding leaves ε/h, 10⁻¹¹ rad/s; the non-commuting part h²/3·w × w′, 10⁻⁸ of the fastest w here.
         let h = 20_000;
         for i in 1..40 {
             let t = duration.0 / 40 * i + 123_456;
@@ -169,7 +169,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// A rate with a component swapped is not the derivative: the check above can fail.
+    /// A rate with swapped components is not the derivative: the check above can fail.
     #[test]
     #[should_panic(expected = "against")]
     fn the_derivative_check_sees_a_swapped_axis() {

@@ -1,4 +1,4 @@
-//! From a link into the meter, until the sender leaves, the time is over or the user ends it.
+//! Reads a link into the meter until the sender leaves, the time is over or the user stops it.
 
 use super::{Event, Heard, Job, ListenError, Meter, Progress};
 use crate::clock::{Clock, WallClock};
@@ -9,15 +9,15 @@ use bytes::BytesMut;
 use std::time::Duration;
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 
-/// Between two reports of progress.
+/// Time between two progress reports.
 const PROGRESS: Duration = Duration::from_millis(200);
-/// Between two greetings, and over what rates are shown.
+/// Time between two greetings, and the window of the displayed rates.
 const SECOND: Duration = Duration::from_secs(1);
 
-/// Listens to a link and tells `on` what happens meanwhile.
+/// Listens to a link and reports events to `on`.
 ///
 /// # Errors
-/// A link that cannot be opened, no byte or no packet in time, a system that has no signals.
+/// A link that does not open, no byte or no packet in time, a system without signals.
 pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime =
@@ -37,7 +37,7 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
                 right: "listen to a port, a pty, a socket or a file",
             });
         };
-        // A sender that waits for a word on UDP gets one; every other link is left in silence.
+        // Only a UDP sender that waits for a first datagram gets a greeting; nothing is sent on other links.
         let greeted = matches!(job.address, Address::UdpOut(_)).then(|| link.sender());
         let meter = if live { Meter::new(job.protocol) } else { Meter::recorded(job.protocol) };
         let clock = WallClock::start();
@@ -112,7 +112,7 @@ impl Ear<'_> {
         Ok(Heard { name: self.name, interrupted, meter: self.meter })
     }
 
-    /// Whether the writer of a pty of ours has left, which its end that we hold does not show, and all is read.
+    /// Whether the writer of our pty has left and everything is read; the end that we hold does not show it.
     fn is_over(&self, before: &mut u64) -> bool {
         let bytes = self.meter.counts().bytes;
         let idle = std::mem::replace(before, bytes) == bytes && bytes > 0;
@@ -121,18 +121,18 @@ impl Ear<'_> {
 
     fn greet(&mut self, seq: u8) {
         if let Some(sender) = &mut self.greeted {
-            // One that does not arrive is followed by the next.
+            // If it is lost, the next one follows.
             let _ = sender.send(&self.job.protocol.greeting(seq));
         }
     }
 
-    /// Ends a wait that has been long enough without a packet.
+    /// Ends a wait without a packet after the timeout.
     fn give_up(&self, waited: Duration) -> Result<(), ListenError> {
         let waits = self.job.wait.is_zero() || waited < self.job.wait || self.meter.counts().packets > 0;
         if waits { Ok(()) } else { Err(self.nothing(Some(self.job.wait))) }
     }
 
-    /// Why there is no packet.
+    /// The reason for the missing packet.
     fn nothing(&self, waited: Option<Duration>) -> ListenError {
         let (link, bytes, protocol) = (self.name.clone(), self.meter.counts().bytes, self.job.protocol);
         match bytes {
@@ -150,7 +150,7 @@ impl Ear<'_> {
     }
 }
 
-/// What the times of a recording are.
+/// The meaning of the times in a recording.
 fn recording(meter: &Meter) -> &'static str {
     match meter.counts().stamps {
         Some(_) => "a .tlog: the stamps in front of its packets are taken for the times of arrival",
@@ -165,7 +165,7 @@ async fn until(end: Option<Instant>) {
     }
 }
 
-/// What to look at where a link stays silent.
+/// What to check when a link stays silent.
 fn check(address: &Address) -> &'static str {
     match address {
         Address::Serial { .. } => {
@@ -186,7 +186,7 @@ fn check(address: &Address) -> &'static str {
     }
 }
 
-/// Samples a second of each stream over the newest whole second.
+/// Samples a second of each stream over the last whole second.
 #[derive(Default)]
 struct Recent {
     since: Option<Instant>,

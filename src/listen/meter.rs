@@ -1,4 +1,4 @@
-//! Bytes and when they arrived in; rates, intervals, losses and damage out. No clock, no I/O.
+//! From bytes and their arrival times to rates, intervals, losses and damage. No clock, no I/O.
 
 use super::stream::{Arrival, Stream};
 use crate::report::{HeardLink, HeardSensor};
@@ -8,16 +8,16 @@ use crate::wire::samples::{Counts, Sample, Samples};
 use ratetable_protocols::mavlink::STAMP_LEN;
 use std::fmt;
 
-/// As many sensors as are told apart on one link.
+/// The most sensors to distinguish on one link.
 const STREAMS: usize = 32;
 
-/// Bytes kept until the first packet, to tell as what else they read.
+/// Bytes kept until the first packet, to identify another protocol.
 const KEPT: usize = 16_384;
 
-/// Packets that bytes must make to be taken for a protocol's.
+/// The number of packets that identify a protocol.
 const ENOUGH: u64 = 3;
 
-/// Counts and times one stream of bytes.
+/// Measures one stream of bytes.
 pub struct Meter {
     samples: Samples,
     recorded: bool,
@@ -25,7 +25,7 @@ pub struct Meter {
     reads: u64,
     first: Option<i64>,
     last: Option<i64>,
-    /// Bytes of the first read: they came before the first interval began.
+    /// Bytes of the first read: they arrived before the first interval began.
     before: u64,
     kept: Vec<u8>,
 }
@@ -37,12 +37,12 @@ impl fmt::Debug for Meter {
 }
 
 impl Meter {
-    /// Of a stream of which only the protocol is known.
+    /// A meter for a stream of which only the protocol is known.
     pub fn new(protocol: Protocol) -> Meter {
         Meter::of(Samples::new(protocol), false)
     }
 
-    /// Of what was recorded before, which may say itself when its packets arrived: a `.tlog`.
+    /// A meter for a recording, which may contain the arrival times of its packets: a `.tlog`.
     pub fn recorded(protocol: Protocol) -> Meter {
         Meter::of(Samples::recorded(protocol), true)
     }
@@ -60,8 +60,8 @@ impl Meter {
         }
     }
 
-    /// Takes in what one read brought at `now` (ns, by a clock that never goes back); `now` is `None` for what was
-    /// recorded before, whose time of arrival means nothing.
+    /// Processes the bytes of one read at `now` (ns, on a clock that never goes back). `now` is `None` for a
+    /// recording, where the arrival time has no meaning.
     pub fn arrived(&mut self, bytes: &[u8], now: Option<i64>) {
         if self.reads == 0 {
             self.before = bytes.len() as u64;
@@ -77,23 +77,24 @@ impl Meter {
         }
     }
 
-    /// Takes in what is held of a last packet: nothing more comes.
+    /// Reads what is held of a last packet; the stream has ended.
     pub fn finish(&mut self) {
         let Meter { samples, streams, reads, last, .. } = self;
         samples.finish(|sample| take(streams, sample, *last, *reads));
     }
 
-    /// What came so far.
+    /// The counts so far.
     pub fn counts(&self) -> &Counts {
         self.samples.counts()
     }
 
-    /// Each sensor heard, in the order in which they began.
+    /// Each sensor heard, in order of its first sample.
     pub fn streams(&self) -> &[Stream] {
         &self.streams
     }
 
-    /// From the first to the last read or stamp, steps of the stamps left out, s; `None` for a recording without stamps.
+    /// Time from the first to the last read or stamp without steps of the stamps, s; `None` for a recording without
+    /// stamps.
     pub fn duration_s(&self) -> Option<f64> {
         let stamped = self.counts().stamps.map(|stamps| stamps.span_ns);
         Some(
@@ -102,7 +103,7 @@ impl Meter {
         )
     }
 
-    /// The protocol that bytes read as which make no packet of the one asked for.
+    /// Another protocol that matches bytes without a packet of the expected one.
     pub fn reads_as(&self) -> Option<Protocol> {
         let makes_packets = |protocol: &Protocol| {
             let mut samples =
@@ -115,16 +116,17 @@ impl Meter {
         Protocol::ALL.into_iter().find(makes_packets)
     }
 
-    /// Each sensor's report, in the order of gyro, accel, mag.
+    /// Each sensor's report, in the order gyro, accel, mag.
     pub fn sensors(&self) -> Vec<HeardSensor> {
         let of = |kind: SensorKind| self.streams.iter().filter(move |stream| stream.kind() == kind);
         SensorKind::ALL.into_iter().flat_map(of).map(Stream::report).collect()
     }
 
-    /// The link's report, `to` as asked for and `name` as opened; `baud` where it has a rate that counts.
+    /// The link's report. `to` is the link as requested, `name` as opened; `baud` is given where a rate applies.
     pub fn link(&self, to: String, name: String, baud: Option<u32>) -> HeardLink {
         let counts = self.counts().clone();
-        // The first read brought what had gathered before: the rate is of what came after it. A stamp was on no link.
+        // The first read brings bytes that gathered earlier, so the rate counts the bytes after it. Stamps were not
+        // on the link.
         let after = match counts.stamps {
             Some(_) => counts.bytes.saturating_sub(STAMP_LEN as u64 * counts.packets),
             None => counts.bytes - self.before,
@@ -150,7 +152,7 @@ impl Meter {
     }
 }
 
-/// Gives a sample to its stream; a new one beyond [`STREAMS`] is not told apart from the last.
+/// Passes a sample to its stream. A new stream beyond [`STREAMS`] is merged with the last.
 fn take(streams: &mut Vec<Stream>, sample: Sample, now: Option<i64>, read: u64) {
     let place = streams.iter().position(|stream| stream.is_of(&sample)).unwrap_or_else(|| {
         if streams.len() < STREAMS {

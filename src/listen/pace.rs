@@ -1,55 +1,55 @@
-//! The interval of a row of times: as it is between losses, whatever the losses, the jitter and the steps of the clock.
-//! Memory is fixed.
+//! The interval of a series of times, as it is between losses: independent of losses, jitter and steps of the
+//! clock. Memory is fixed.
 
 use crate::report::Times;
 use std::f64::consts::TAU;
 
-/// Steps looked at before the first interval is told.
+/// Steps examined before the first interval is known.
 const EARLY: usize = 64;
 
-/// How often those are placed anew at most, each time by the interval that they had.
+/// The most rounds that place these steps again, each with the interval found so far.
 const ROUNDS: usize = 8;
 
-/// How much of a sample's distance from its place the next place keeps. With less, a late sample and the early one
-/// behind it look like a gap; with all of it, the places would not follow a clock that drifts.
+/// The share of a sample's distance from its place that the next place takes over. With less, a late sample and the
+/// early one after it look like a gap; with all of it, the places would not follow a clock that drifts.
 const KEPT: f64 = 0.8;
 
 /// A step of the clock is longer than this, ns, …
 const SHORTEST_JUMP: i64 = 1_000_000_000;
 
-/// … and longer than so many intervals.
+/// … and longer than this many intervals.
 const JUMP: f64 = 100.0;
 
-/// Longer steps, in intervals, do not go into what the interval is: a place more or less would change it.
+/// Steps longer than this, in intervals, do not contribute to the interval: one place more or less would change it.
 const SHORT: f64 = 16.0;
 
-/// What is known of a step besides how long it is.
+/// What is known of a step besides its length.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Evidence {
-    /// Nothing says that as much time went by, so a long step is one of the clock.
+    /// Nothing confirms that this much time passed, so a long step is a step of the clock.
     pub may_jump: bool,
-    /// The numbers say that no packet of the sender is missing in it.
+    /// The sequence numbers show that no packet of the sender is missing in it.
     pub lossless: bool,
 }
 
 /// Steps from one sample time to the next, all forward.
 ///
-/// Each sample has its place on a grid that follows the stream: the number of intervals to it is that of places passed.
-/// Their sum is what the interval is found from, `span / places`, so a gap changes nothing. Two places passed at once
-/// where nothing was lost are one: a sensor that is told at the ticks of a faster one, or in whole ms, now and then has
-/// no sample at a tick. A jump of the clock is left out.
+/// Each sample has its place on a grid that follows the stream: the number of intervals to it is the number of
+/// places passed. The interval is `span / places` over their sum, so a gap changes nothing. Two places passed at
+/// once without a loss count as one: a sensor sent at the ticks of a faster one, or in whole ms, sometimes has no
+/// sample at a tick. A jump of the clock is left out.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     steps: Times,
-    /// The first ones, until the interval is known.
+    /// The first steps, until the interval is known.
     early: Vec<(i64, Evidence)>,
-    /// ns; 0 until it is known.
+    /// ns; 0 until known.
     interval: f64,
-    /// The places that all steps passed.
+    /// The number of places that all steps passed.
     places: u64,
-    /// Of the short ones, how long they took together, ns, and the places.
+    /// The total length of the short steps, ns, and their places.
     short: (i64, u64),
-    /// How far the newest sample is behind its place, in intervals.
+    /// How far the newest sample lags behind its place, in intervals.
     late: f64,
     jumps: u64,
     longest_jump: i64,
@@ -69,7 +69,7 @@ impl Pace {
         }
     }
 
-    /// Takes in a step of more than nothing, ns.
+    /// Records a step longer than zero, ns.
     pub fn take(&mut self, step: i64, evidence: Evidence) {
         if self.interval > 0.0 {
             self.place(step, evidence);
@@ -85,7 +85,7 @@ impl Pace {
         }
     }
 
-    /// What there is to tell, from however few steps.
+    /// The result so far, from however few steps.
     pub fn settled(&self) -> Pace {
         let mut settled = self.clone();
         settled.settle();
@@ -93,33 +93,33 @@ impl Pace {
         settled
     }
 
-    /// The places passed a second, Hz.
+    /// Places passed a second, Hz.
     pub fn rate(&self) -> Option<f64> {
         let (span, places) = self.short;
         (places > 0).then(|| places as f64 * 1e9 / span as f64)
     }
 
-    /// Places passed where no sample was; `None` without a step.
+    /// Places passed without a sample; `None` without a step.
     pub fn missing(&self) -> Option<u64> {
         (self.steps.count() > 0).then(|| self.places.saturating_sub(self.steps.count()))
     }
 
-    /// The steps, jumps left out.
+    /// The steps, without jumps.
     pub fn steps(&self) -> &Times {
         &self.steps
     }
 
-    /// How often the clock jumped forward, and by how much at most, ns.
+    /// How often the clock jumped forward, and the longest jump, ns.
     pub fn jumps(&self) -> (u64, i64) {
         (self.jumps, self.longest_jump)
     }
 
-    /// Whether so long a step is too long to be believed of a stream that may have lost samples.
+    /// Whether a step is too long to be explained by lost samples.
     pub fn is_long(&self, step: i64) -> bool {
         step > SHORTEST_JUMP && step as f64 > JUMP * self.interval
     }
 
-    /// Finds the interval from the first steps and places them.
+    /// Determines the interval from the first steps and places them.
     fn settle(&mut self) {
         let early = std::mem::take(&mut self.early);
         if early.is_empty() {
@@ -127,7 +127,7 @@ impl Pace {
         }
         let mut steps = Times::new();
         early.iter().for_each(|(step, _)| steps.record(*step));
-        // Which guess is right shows where the samples are nearest to their places.
+        // The right guess puts the samples nearest to their places.
         let rounds = guesses(&steps).map(|guess| Pace::placed(&early, guess));
         let nearest =
             rounds.into_iter().reduce(|best, other| if other.1 < 0.999 * best.1 { other } else { best });
@@ -136,8 +136,8 @@ impl Pace {
         }
     }
 
-    /// Places these steps, beginning with a guess of the interval, until it is that of the places; with the sum of the
-    /// squares of how far each sample is from its place.
+    /// Places these steps, starting from a guess of the interval, until the interval agrees with the places. Also
+    /// returns the sum of squared distances of the samples from their places.
     fn placed(early: &[(i64, Evidence)], guess: f64) -> (Pace, f64) {
         let mut interval = guess;
         for left in (0..ROUNDS).rev() {
@@ -153,7 +153,7 @@ impl Pace {
         (Pace { interval, ..Pace::new() }, f64::INFINITY)
     }
 
-    /// Takes the interval from all that was placed.
+    /// Computes the interval from everything placed so far.
     fn measure(&mut self) {
         let (span, places) = self.short;
         if places > 0 {
@@ -161,7 +161,7 @@ impl Pace {
         }
     }
 
-    /// How far the sample is from its place, in intervals.
+    /// The distance of the sample from its place, in intervals.
     fn place(&mut self, step: i64, evidence: Evidence) -> f64 {
         if evidence.may_jump && self.is_long(step) {
             self.jumps += 1;
@@ -184,7 +184,7 @@ impl Pace {
         away
     }
 
-    /// Begins anew from all steps where the first ones were not like the others.
+    /// Starts again from all steps if the first ones differ from the others.
     fn doubt(&mut self) {
         if self.steps.count() == 0 {
             return;
@@ -202,7 +202,7 @@ impl Pace {
     }
 }
 
-/// Each step that occurred, ns, with its count.
+/// Each distinct step, ns, with its count.
 fn values(steps: &Times) -> impl Iterator<Item = (f64, f64)> {
     steps.values().into_iter().map(|(us, count)| (1e3 * us, count as f64))
 }
@@ -211,7 +211,7 @@ fn places(step: f64, interval: f64) -> f64 {
     (step / interval).round().max(1.0)
 }
 
-/// How far the sample before these steps is behind its place, if the places are where the samples are on average, in
+/// How far the sample before these steps lags behind its place, if the places match the samples on average, in
 /// intervals.
 fn lateness(early: &[(i64, Evidence)], interval: f64) -> f64 {
     let (mut at, mut sin, mut cos) = (0.0, 0.0, 1.0);
@@ -224,8 +224,8 @@ fn lateness(early: &[(i64, Evidence)], interval: f64) -> f64 {
     -libm::atan2(sin, cos) / TAU
 }
 
-/// Guesses of the interval, ns: the mean of the steps near the median (times in whole ms of a 400 Hz stream have steps of
-/// 2 and 3 ms, and none of 2.5), that of which all steps are about a whole number, and the median itself.
+/// Guesses of the interval, ns: the mean of the steps near the median (times in whole ms of a 400 Hz stream have
+/// steps of 2 and 3 ms, and none of 2.5), the one of which all steps are about a multiple, and the median itself.
 fn guesses(steps: &Times) -> [f64; 3] {
     let median = 1e3 * steps.late().map_or(0.0, |late| late.p50);
     let near = (0.25 * median)..(1.9 * median);
@@ -243,7 +243,7 @@ fn guesses(steps: &Times) -> [f64; 3] {
     [near, whole, median].map(|interval| interval.max(1.0))
 }
 
-/// All steps together by all the places that they pass: each with its count.
+/// The sum of all steps divided by all places that they pass, each with its count.
 fn mean(steps: impl Iterator<Item = (f64, f64, f64)>) -> f64 {
     let (span, passed) = steps.fold((0.0, 0.0), |(span, passed), (step, count, places)| {
         (span + step * count, passed + places * count)
@@ -258,7 +258,7 @@ mod tests {
 
     const MS: i64 = 1_000_000;
 
-    /// The pace of these times, none of which may have jumped.
+    /// The pace of these times, without jumps.
     fn pace(times: impl IntoIterator<Item = i64>) -> Pace {
         let times: Vec<i64> = times.into_iter().collect();
         let mut pace = Pace::new();
@@ -316,13 +316,13 @@ mod tests {
     fn first_steps_that_are_not_like_the_others_do_not_stay() {
         let pace = pace((0..200).map(|k| k * 10 * MS).chain((0..50_000).map(|k| 2000 * MS + k * MS)));
         assert!((pace.rate().unwrap() - 1000.0).abs() < 1.0, "{:?}", pace.rate());
-        // Two hundred steps of ten intervals each, the one into the even part among them.
+        // Two hundred steps of ten intervals each, including the one into the even part.
         assert_eq!(pace.missing(), Some(200 * 9));
     }
 
     #[test]
     fn a_tick_without_a_sample_is_no_gap_where_the_numbers_have_none() {
-        // 999.8 Hz and 800 Hz, told at the ticks of 1 kHz.
+        // 999.8 Hz and 800 Hz, sent at the ticks of 1 kHz.
         for (hz, missing_without) in [(999.8, 20), (800.0, 25_000)] {
             let times: Vec<i64> =
                 (0..).map(|k| (f64::from(k) * 1000.0 / hz).ceil() as i64 * MS).take(100_000).collect();
@@ -345,7 +345,7 @@ mod tests {
                 );
             }
         }
-        // A longer gap is one all the same: the sender took no samples.
+        // A longer gap still counts: the sender took no samples.
         let mut pace = Pace::new();
         (0..1000).for_each(|k| {
             pace.take(if k == 500 { 7 * MS } else { MS }, Evidence { may_jump: false, lossless: true })

@@ -1,17 +1,18 @@
-//! One sensor of a stream: how many, how evenly, by the sender's times and by ours. Memory is fixed.
+//! One sensor of a stream: its count and evenness, by the sender's times and by ours. Memory is fixed.
 
 use super::pace::{Evidence, Pace};
 use crate::report::{HeardSensor, Times};
 use crate::sensor::SensorKind;
 use crate::wire::samples::{Sample, Source};
 
-/// A clock of 32 bits wraps after so long: µs and ms, in ns.
+/// A clock of 32 bits wraps after this long: in µs and in ms, given in ns.
 const WRAPS: [i64; 2] = [(1 << 32) * 1000, (1 << 32) * 1_000_000];
 
-/// How far around a wrap two samples may be that follow each other, ns.
+/// How far apart two consecutive samples around a wrap may be, ns.
 const AROUND: i64 = 10_000_000_000;
 
-/// A gap in the numbers makes no longer gap in the times than this, ns: beyond, the sender was started anew.
+/// A gap in the sequence numbers explains a gap in the times up to this length, ns; a longer one means that the
+/// sender restarted.
 const LONGEST_LOSS: i64 = 60_000_000_000;
 
 /// One sensor of a stream.
@@ -21,38 +22,38 @@ pub struct Stream {
     kind: SensorKind,
     source: Source,
     count: u64,
-    /// The newest arrival, ns.
+    /// The newest arrival time, ns.
     arrived: Option<i64>,
-    /// How long arrivals took together, and how many intervals that is.
+    /// The total time between arrivals, and the number of intervals.
     arrivals: (i64, u64),
-    /// The newest sample time, ns, wraps added.
+    /// The newest sample time, ns, with wraps added.
     sampled: Option<i64>,
-    /// What wraps of the sender's clock have added to its times, ns.
+    /// The total of the wraps of the sender's clock, ns.
     wrapped: i64,
-    /// What had been lost at the newest sample.
+    /// The number of lost packets at the newest sample.
     lost: Option<u64>,
     read: u64,
-    /// Samples that arrived in the read of the one before; `None` where nothing is known of reads.
+    /// Samples that arrived in the same read as the one before; `None` where reads are unknown.
     together: Option<u64>,
     steps_back: u64,
     longest_back: i64,
-    /// The newest sample time before the last one, where that was older.
+    /// The newest sample time before the last one, if that was older.
     overtaken: Option<i64>,
-    /// Samples that came after a newer one: no gap hides them.
+    /// Samples that came after a newer one: each fills a gap.
     filled: u64,
     interval: Times,
     pace: Pace,
     jitter: Times,
 }
 
-/// When a sample arrived, as far as that is known.
+/// The arrival of a sample, as far as known.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
-    /// ns, by whatever clock; `None` for a recording without stamps.
+    /// Arrival time, ns, on any clock; `None` for a recording without stamps.
     pub at: Option<i64>,
-    /// Whether a recording's stamp says so, by a clock that may be set.
+    /// Whether it comes from a recording's stamp, whose clock may be set.
     pub stamped: bool,
-    /// In which read.
+    /// The number of the read.
     pub read: u64,
 }
 
@@ -84,12 +85,12 @@ impl Stream {
         (self.kind, self.source) == (sample.kind, sample.source)
     }
 
-    /// What is sensed.
+    /// The kind of sensor.
     pub fn kind(&self) -> SensorKind {
         self.kind
     }
 
-    /// As the report calls it: `gyro`, and `gyro-2` for another gyro on the same link.
+    /// Its name in the report: `gyro`, and `gyro-2` for another gyro on the same link.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -99,12 +100,12 @@ impl Stream {
         self.count
     }
 
-    /// Intervals between arrivals in µs, each with how often it occurred.
+    /// Intervals between arrivals in µs, each with its count.
     pub fn intervals_us(&self) -> Vec<(f64, u64)> {
         self.interval.values()
     }
 
-    /// Takes a sample in.
+    /// Records a sample.
     pub(super) fn take(&mut self, sample: &Sample, arrival: Arrival) {
         self.count += 1;
         let waited =
@@ -128,8 +129,7 @@ impl Stream {
         }
     }
 
-    /// How far the sample time is from that of the sample before it, by a clock that goes on counting where its 32 bits
-    /// wrap.
+    /// The step from the previous sample time, on a clock unwrapped where its 32 bits wrap.
     fn step(&mut self, said: i64) -> Option<i64> {
         let mut t = said.saturating_add(self.wrapped);
         if let Some(before) = self.sampled {
@@ -148,8 +148,8 @@ impl Stream {
         self.sampled.replace(t).map(|before| t.saturating_sub(before))
     }
 
-    /// Takes in a step of the sample time. `waited`: how long between the arrivals; `lossless`: whether nothing was
-    /// lost by the numbers; each where it is known. Hands the step back where it is the time between two samples.
+    /// Records a step of the sample time. `waited` is the time between the arrivals; `lossless` says whether the
+    /// sequence numbers show no loss; both if known. Returns the step if it is the time between two samples.
     fn go_on(&mut self, step: i64, waited: Option<i64>, lossless: Option<bool>) -> Option<i64> {
         let t = self.sampled?;
         if step <= 0 {
@@ -158,7 +158,7 @@ impl Stream {
             self.overtaken = (step < 0).then(|| t.saturating_sub(step));
             return None;
         }
-        // Time goes on from before a step back: that was one sample out of order, and no new beginning.
+        // If time goes on from before a step back, that was one sample out of order, not a restart.
         let skipped = self.overtaken.take().map(|newest| t.saturating_sub(newest)).filter(|ahead| *ahead > 0);
         self.filled += u64::from(skipped.is_some());
         let may_lose = lossless == Some(false) && step <= LONGEST_LOSS;
@@ -170,12 +170,12 @@ impl Stream {
         follows.then_some(step)
     }
 
-    /// Whether a recording's stamps went on as time does: not back, and not far ahead where the sender's clock did not.
+    /// Whether a recording's stamps advanced plausibly: not back, and not far ahead unless the sender's clock did.
     fn is_plausible(&self, waited: i64, step: Option<i64>) -> bool {
         waited >= 0 && !(self.pace.is_long(waited) && step.is_some_and(|step| step < waited / 2))
     }
 
-    /// The clock's longest step, s: forward, or back as a negative number.
+    /// The clock's longest step, s; negative for a step back.
     fn longest_step(&self, forward: i64) -> Option<f64> {
         let longest = if forward > -self.longest_back { forward } else { self.longest_back };
         (longest != 0).then_some(longest as f64 * 1e-9)

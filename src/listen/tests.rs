@@ -1,4 +1,4 @@
-//! The meter against streams whose rates, gaps and bursts are known exactly.
+//! The meter on streams with exactly known rates, gaps and bursts.
 
 use super::*;
 use crate::report::HeardSensor;
@@ -16,7 +16,7 @@ fn packet(k: i64) -> Vec<u8> {
     bytes[..len].to_vec()
 }
 
-/// These packets, the `k`-th arriving when `at` says.
+/// A meter fed with these packets, the `k`-th arriving at `at(k)`.
 fn heard(packets: impl IntoIterator<Item = i64>, at: impl Fn(i64) -> i64) -> Meter {
     let mut meter = Meter::new(Protocol::Mpu);
     packets.into_iter().for_each(|k| meter.arrived(&packet(k), Some(at(k))));
@@ -29,7 +29,7 @@ fn only(meter: &Meter) -> HeardSensor {
     sensor.clone()
 }
 
-/// Within what three digits of a histogram keep.
+/// Whether they agree within the three digits of a histogram.
 fn close(found: f64, expected: f64) -> bool {
     (found - expected).abs() <= 2e-3 * expected.abs()
 }
@@ -73,7 +73,7 @@ fn gaps_are_counted_by_number_and_by_time() {
     let lost = |k: &i64| [10, 11, 12, 400, 999].contains(k);
     let meter = heard((0..1500).filter(|k| !lost(k)), |k| k * MS);
     assert_eq!((meter.counts().lost, only(&meter).missing, only(&meter).received), (5, Some(5), 1495));
-    // A hole of 256 is not seen by the number, and is by the time.
+    // The sequence number does not show a gap of 256; the time does.
     let meter = heard((0..100).chain(355..600), |k| k * MS);
     assert_eq!((meter.counts().lost, only(&meter).missing), (0, Some(255)));
     let meter = heard((0..100).chain(100 + 1000..2000), |k| k * MS);
@@ -92,7 +92,7 @@ fn time_that_does_not_go_on_is_counted() {
 
 #[test]
 fn a_clock_that_is_set_changes_neither_rate_nor_loss_and_is_told() {
-    // (what the sender's clock adds from the 300th sample on, steps back, steps forward)
+    // (step of the sender's clock at the 300th sample, steps back, steps forward)
     for (set, back, forward) in [(0, 0, 0), (-295, 1, 0), (-30, 1, 0), (5_000, 0, 1), (3_600_000, 0, 1)] {
         for live in [true, false] {
             let mut meter = if live { Meter::new(Protocol::Mpu) } else { Meter::recorded(Protocol::Mpu) };
@@ -114,20 +114,20 @@ fn a_clock_that_is_set_changes_neither_rate_nor_loss_and_is_told() {
 
 #[test]
 fn silence_of_many_seconds_is_a_loss_where_the_arrivals_or_the_numbers_have_it() {
-    // Five seconds of nothing, live; the number goes on as it must.
+    // Five seconds without a packet, live; the number continues correctly.
     let meter = heard((0..300).chain(5300..5600), |k| k * MS);
     assert_eq!((only(&meter).missing, only(&meter).steps_forward), (Some(5000), 0));
-    // The same in a recording, by the numbers.
+    // The same in a recording, from the sequence numbers.
     let mut meter = Meter::recorded(Protocol::Mpu);
     (0..300).chain(5300..5600).for_each(|k| meter.arrived(&packet(k), None));
     assert_eq!((only(&meter).missing, only(&meter).steps_forward), (Some(5000), 0));
-    // Text has no numbers: a recording of it leaves the jump open, and it is told as one of the clock.
+    // Text has no sequence numbers: in a recording the jump is ambiguous, and counts as a step of the clock.
     let line = |k: i64| format!("{},gyro,0,0,0\n", k * MS);
     let mut meter = Meter::recorded(Protocol::Csv);
     (0..300).chain(5300..5600).for_each(|k| meter.arrived(line(k).as_bytes(), None));
     let sensor = only(&meter);
     assert_eq!((sensor.missing, sensor.steps_forward, sensor.rate_hz), (Some(0), 1, Some(1000.0)));
-    // What is short enough to be loss is loss.
+    // A gap that is short enough counts as loss.
     let mut meter = Meter::recorded(Protocol::Csv);
     (0..300).chain(1200..1600).for_each(|k| meter.arrived(line(k).as_bytes(), None));
     assert_eq!((only(&meter).missing, only(&meter).steps_forward), (Some(900), 0));
@@ -172,7 +172,7 @@ fn who_is_overtaken_is_out_of_order_and_neither_lost_nor_missing() {
     let (counts, sensor) = (meter.counts(), only(&meter));
     assert_eq!((counts.lost, counts.out_of_order, counts.duplicates), (0, 2, 0));
     assert_eq!((sensor.missing, sensor.steps_back, sensor.received), (Some(0), 2, 100));
-    // One overtaken and one that never comes.
+    // One packet overtaken and one lost.
     let meter = heard([0, 1, 3, 2, 4, 6].into_iter().chain(7..100), |k| k * MS);
     assert_eq!((meter.counts().lost, meter.counts().out_of_order), (1, 1));
     assert_eq!(only(&meter).missing, Some(1));

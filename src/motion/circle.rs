@@ -1,8 +1,8 @@
-//! A coordinated turn: steady angular rate together with the bank whose lift makes the centripetal force.
+//! A coordinated turn: steady angular rate and the bank whose lift makes the centripetal force.
 //!
-//! At bank φ and speed V the heading turns at `g·tan φ / V`. The bank grows linearly over `entry`, holds, and
-//! goes back over the last `entry`; then the heading has a closed form too: `−g·T/(V·φ₀) · ln cos(φ₀·t/T)`.
-//! With `entry = "0 s"` nothing rolls: the vehicle is taken to fly the turn already, at the attitude it has.
+//! At bank φ and speed V the heading turns at `g·tan φ / V`. The bank grows linearly over `entry`, holds, and goes
+//! back over the last `entry`. The heading then also has a closed form: `−g·T/(V·φ₀) · ln cos(φ₀·t/T)`. With `entry
+//! = "0 s"` nothing rolls: the vehicle already flies the turn, at its present attitude.
 
 use super::{Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;
@@ -77,7 +77,8 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
 }
 
 impl Circle {
-    /// (bank turned so far, its rate, heading turned so far, its rate): rad and rad/s, `t` in s.
+    /// Bank and heading since the start, each with its rate: (bank, bank rate, heading, heading rate), rad and
+    /// rad/s; `t` in s.
     fn path(&self, t: f64) -> (f64, f64, f64, f64) {
         let (entry, duration) = (self.entry.seconds(), self.duration.seconds());
         let rate = |bank: f64| self.gravity * libm::tan(bank) / self.speed;
@@ -101,7 +102,7 @@ impl Circle {
         }
     }
 
-    /// The heading turned while the bank grew linearly from 0 to `bank`.
+    /// The heading change while the bank grows linearly from 0 to `bank`.
     fn rolled_heading(&self, bank: f64) -> f64 {
         if self.bank == 0.0 {
             return 0.0;
@@ -117,7 +118,7 @@ impl Motion for Circle {
         let (bank, bank_rate, heading, heading_rate) = self.path(t.to_f64());
         let course = Euler::from_quat(start.q).yaw;
         let (sine, cosine) = (libm::sin(course + heading), libm::cos(course + heading));
-        // In nav: roll about the course flown at the start, then turn about the vertical.
+        // In nav axes: roll about the initial course, then turn about the vertical.
         let rolled = exp(DVec3::new(libm::cos(course), libm::sin(course), 0.0) * bank);
         let attitude = Attitude::from_quat(exp(DVec3::Z * heading) * rolled * start.q);
         let turning = Vector::<Nav>::new(bank_rate * cosine, bank_rate * sine, heading_rate);
@@ -150,7 +151,7 @@ pub(super) mod tests {
     use super::*;
     use crate::time::NANOS;
 
-    /// A motion, where it has seams, and its length.
+    /// A motion, the times of its seams, and its length.
     pub(in crate::motion) fn example() -> (Box<dyn Motion>, Vec<SimTime>, SimTime) {
         let seams = vec![SimTime(2 * NANOS), SimTime(18 * NANOS)];
         (Box::new(circle(25.0, 2.0)), seams, SimTime(20 * NANOS))

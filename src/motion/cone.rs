@@ -1,8 +1,8 @@
-//! Coning: the body's x axis wobbles round a cone while the body does not spin about it on average.
+//! Coning: the body's x axis moves round a cone while the body does not spin about it on average.
 //!
-//! `q(t) = q₀ ⊗ c(0)* ⊗ c(t)` with `c(t) = [cos(a/2), 0, sin(a/2)·cos Wt, sin(a/2)·sin Wt]`, half-angle a and
-//! cone frequency W; `w(t) = [−2W·sin²(a/2), −W·sin a·sin Wt, W·sin a·cos Wt]` (Bortz 1971; Miller 1983). It is
-//! the classical worst case of an attitude method: the mean of w is not zero though the attitude comes back.
+//! `q(t) = q₀ ⊗ c(0)* ⊗ c(t)` with `c(t) = [cos(a/2), 0, sin(a/2)·cos Wt, sin(a/2)·sin Wt]`, half-angle a and cone
+//! frequency W; `w(t) = [−2W·sin²(a/2), −W·sin a·sin Wt, W·sin a·cos Wt]` (Bortz 1971; Miller 1983). It is the
+//! classical worst case of an attitude method: the mean of w is not zero although the attitude returns.
 
 use super::{Kinematics, Motion, MotionKind};
 use crate::double::Double;
@@ -46,7 +46,7 @@ pub(super) struct Cone {
     turns: Double,
     /// rad/s.
     frequency: f64,
-    /// The scene's y and z against ours.
+    /// The sign of the scene's y and z in our axes.
     sign: f64,
     warnings: Vec<String>,
 }
@@ -69,11 +69,11 @@ impl Cone {
     }
 }
 
-/// What an angle beyond half a turn comes to.
+/// The equivalent cone for an angle beyond half a turn.
 fn other_cone(half_angle: f64) -> Option<String> {
     let (given, rest) = (half_angle.abs().to_degrees(), half_angle.abs() % TAU);
     let same = rest.min(TAU - rest).to_degrees();
-    // Beyond rounding: 180 deg itself is a cone.
+    // Beyond rounding: 180 deg itself is a valid cone.
     (given > 180.0 + 1e-9).then(|| {
         format!(
             "a `cone` with a half_angle of {} deg equals one of {} deg: use a half-angle from 0 to 180 deg",

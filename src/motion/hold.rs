@@ -1,4 +1,4 @@
-//! Standing still.
+//! No motion.
 
 use super::{Kinematics, Motion, MotionKind};
 use crate::double::Double;

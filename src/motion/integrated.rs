@@ -1,9 +1,9 @@
-//! The attitude of a motion that is known by its angular rate alone: solved once, then asked at any time.
+//! The attitude of a motion given only by its angular rate: solved once, then evaluated at any time.
 //!
 //! Sixth-order Magnus steps (S. Blanes, F. Casas, J. Oteo, J. Ros, *The Magnus expansion and some of its
 //! applications*, Physics Reports 470, 2009, sec. 5.4), halved until two solutions agree within 10⁻¹⁰ degrees over
-//! the whole segment; the finer, about 64 times nearer, is kept. Every step's end is a node, so that an attitude
-//! costs one step from the node before it, whatever was asked earlier. A node takes 40 bytes, a step two of them, and
+//! the whole segment. The finer one, about 64 times more accurate, is kept. Every step ends at a node, so an
+//! attitude costs one step from the node before it, in any order of times. A node takes 40 bytes, a step two nodes;
 //! there are at most four million steps.
 
 use super::{Kinematics, Motion};
@@ -14,14 +14,14 @@ use std::fmt::Debug;
 
 /// An angular rate of the body that is an analytic function of time.
 pub(super) trait BodyRate: Debug + Send + Sync {
-    /// At `t` seconds from the segment's start, rad/s in body axes.
+    /// The rate at `t` seconds from the segment's start, rad/s in body axes.
     fn at(&self, t: f64) -> DVec3;
 
     /// A bound on how fast it turns or changes, rad/s.
     fn fastest(&self) -> f64;
 }
 
-/// Two solutions nearer than this (rad, just below 10⁻¹⁰ degrees) are taken for the truth.
+/// Two solutions closer than this (rad, just below 10⁻¹⁰ degrees) count as exact.
 const ENOUGH: f64 = 1.7e-12;
 
 /// The most steps of two nodes each.
@@ -42,8 +42,9 @@ struct Node {
 }
 
 impl<R: BodyRate> Integrated<R> {
-    /// Solved between the first and the last of `edges` (seconds from the segment's start), between which the rate
-    /// is smooth. `None` if it changes too fast for so long: more than the steps there may be would be needed.
+    /// Solves between the first and the last of `edges` (seconds from the segment's start); the rate is smooth
+    /// between edges. `None` if it changes too fast for too long, so that more than the allowed steps would be
+    /// needed.
     pub(super) fn new(rate: R, edges: &[f64]) -> Option<Self> {
         let mut step = 0.5 / rate.fastest().max(1e-3);
         loop {
@@ -81,7 +82,7 @@ impl<R: BodyRate> Motion for Integrated<R> {
     }
 }
 
-/// The nodes of steps of at most half of `step`, unless those of twice the length end elsewhere.
+/// The nodes of steps of at most half of `step`, unless those of twice the length disagree.
 fn solve(rate: &impl BodyRate, edges: &[f64], step: f64) -> Option<Vec<Node>> {
     let mut node = Node { t: edges.first().copied().unwrap_or(0.0), q: DQuat::IDENTITY };
     let mut coarse = node.q;
@@ -97,7 +98,7 @@ fn solve(rate: &impl BodyRate, edges: &[f64], step: f64) -> Option<Vec<Node>> {
                 node = Node { t: next, q };
                 nodes.push(node);
             }
-            // Written so that what is not a number is refused too.
+            // Written so that NaN fails too.
             let agree = angle_between(coarse, node.q) < ENOUGH;
             if !agree {
                 return None;
@@ -108,7 +109,7 @@ fn solve(rate: &impl BodyRate, edges: &[f64], step: f64) -> Option<Vec<Node>> {
 }
 
 /// The rotation vector of one step of h seconds: the Magnus series to sixth order from three Gauss points. Body
-/// rates act from the right, so that the commutator is −a×b.
+/// rates act from the right, so the commutator is −a×b.
 fn magnus_6(rate: &impl BodyRate, t: f64, h: f64) -> DVec3 {
     /// √15.
     const ROOT: f64 = 3.872_983_346_207_417;

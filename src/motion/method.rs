@@ -1,13 +1,13 @@
-//! Ways to step attitude from samples of angular rate, or from its integrals: one file a method.
+//! Methods that step attitude from samples of angular rate or from its integrals: one file for each.
 //!
 //! A method is a formula over plain numbers: the attitude before the step, the step's length, and the inputs it
-//! declares ([`Input`]). It has no clock, no memory and no I/O. What surrounds every formula is the same for all
-//! ([`MethodKind::run`]): a step that is not positive and finite, an input or an attitude that is not finite, and a
-//! result beyond the range of the precision are refused with the reason, so that no NaN ever spreads.
+//! declares ([`Input`]). It has no clock, no memory and no I/O. [`MethodKind::run`] surrounds every formula with
+//! the same checks: it rejects, with the reason, a step that is not positive and finite, a non-finite input or
+//! attitude, and a result beyond the range of the precision, so that no NaN ever spreads.
 //!
-//! Rates and increments are in body axes, rad/s and rad; `q` takes body to nav, so that a turn multiplies from
-//! the right. None of these methods makes our truth: they are there to be compared with it, see
-//! [`study`](crate::study). To add one: a file beside these and a line in [`METHODS`].
+//! Rates and increments are in body axes, rad/s and rad; `q` takes body to nav, so a turn multiplies from the
+//! right. No method makes our truth; they exist to be compared with it, see [`study`](crate::study). To add one: a
+//! file beside these and a line in [`METHODS`].
 
 mod algebra;
 mod choice;
@@ -51,7 +51,7 @@ pub use rkmk_4::Rkmk4;
 
 use std::fmt;
 
-/// Every method: first from samples of rate, then from exact increments, each group by order.
+/// Every method: first those with samples of rate, then those with exact increments, each group by order.
 pub static METHODS: [&MethodKind; 14] = [
     &euler::KIND,
     &paper::KIND,
@@ -69,28 +69,28 @@ pub static METHODS: [&MethodKind; 14] = [
     &polynomial_fit::KIND,
 ];
 
-/// The method called `name`.
+/// The method with this name.
 pub fn find(name: &str) -> Option<&'static MethodKind> {
     METHODS.into_iter().find(|method| method.name == name)
 }
 
-/// A formula that takes attitude over one step from `N` inputs.
+/// A formula that advances attitude over one step from `N` inputs.
 pub trait Method<const N: usize> {
-    /// The attitude after a step of `h` seconds that starts at `q`. Everything in it is finite, and `h` positive.
+    /// The attitude after a step of `h` seconds from `q`. All inputs are finite, and `h` is positive.
     fn turn<R: Real>(q: Quaternion<R>, h: R, inputs: &[Triple<R>; N]) -> Quaternion<R>;
 }
 
-/// What a method reads for one step, in this order.
+/// The inputs of one step, in this order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input {
-    /// The angular rate (rad/s) at these fractions of the step, which lasts from one sample to the next.
+    /// The angular rate (rad/s) at these fractions of the step, which spans one sample interval.
     Rate(&'static [f64]),
-    /// Integrals of the angular rate (rad) over so many samples' intervals, which together make one step.
+    /// Integrals of the angular rate (rad) over this many sample intervals, which together make one step.
     Increments(usize),
 }
 
 impl Input {
-    /// How many vectors one step reads.
+    /// The number of vectors that one step reads.
     pub const fn count(self) -> usize {
         match self {
             Input::Rate(fractions) => fractions.len(),
@@ -98,7 +98,7 @@ impl Input {
         }
     }
 
-    /// How many of a sensor's samples one step goes forward.
+    /// The number of a sensor's samples that one step spans.
     pub const fn samples(self) -> usize {
         match self {
             Input::Rate(_) => 1,
@@ -122,7 +122,7 @@ impl fmt::Display for Input {
     }
 }
 
-/// The numbers a method is computed in.
+/// The number type of the computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// Double, `f64`.
@@ -132,7 +132,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// As in `accuracy.csv`.
+    /// Its name in `accuracy.csv`.
     pub const fn name(self) -> &'static str {
         match self {
             Precision::Double => f64::NAME,
@@ -141,29 +141,29 @@ impl Precision {
     }
 }
 
-/// Compared in double precision only.
+/// Compared only in double precision.
 const DOUBLE: &[Precision] = &[Precision::Double];
-/// Compared in single precision too: cheap enough for a part without doubles.
+/// Also compared in single precision: cheap enough for a processor without doubles.
 const BOTH: &[Precision] = &[Precision::Double, Precision::Single];
 
-/// Many steps in one call: attitude, step, the inputs of one step after another.
+/// Many steps in one call: attitude, step length, the inputs of consecutive steps.
 pub type Run<R> = fn(Quaternion<R>, R, &[Triple<R>]) -> Result<Quaternion<R>, Refused>;
 
-/// A method: its name, what it reads and how it is run.
+/// A method: its name, its inputs and how to run it.
 #[derive(Debug)]
 pub struct MethodKind {
-    /// As in `method = "…"`.
+    /// Its name in `method = "…"`.
     pub name: &'static str,
     /// One line for `list methods`.
     pub about: &'static str,
-    /// The power of the step with which its error at a fixed time falls, on smooth motion.
+    /// The power of the step length with which its error at a fixed time falls, on smooth motion.
     pub order: u32,
-    /// What it reads for one step.
+    /// The inputs of one step.
     pub input: Input,
-    /// What the accuracy study compares it in. It runs in either.
+    /// The precisions that the accuracy study compares. It runs in either.
     pub precisions: &'static [Precision],
-    /// Nanoseconds a step takes in double precision, checks included: what [`choose`] compares, written down so
-    /// that its choice is the same on every machine. Measured by `study accuracy` for docs/accuracy.md.
+    /// Nanoseconds for a step in double precision, checks included. [`choose`] compares this constant, so that its
+    /// choice is the same on every machine. Measured by `study accuracy` for docs/accuracy.md.
     pub ns_per_step: u32,
     double: Run<f64>,
     single: Run<f32>,
@@ -191,8 +191,8 @@ impl MethodKind {
         }
     }
 
-    /// Steps `q` by `h` seconds over and over, each time with the next [`count`](Input::count) of `inputs`; or
-    /// says at which step it was refused, and why.
+    /// Steps `q` by `h` seconds repeatedly, each time with the next [`count`](Input::count) of `inputs`. An error
+    /// says which step failed, and why.
     pub fn run<R: Real>(
         &self,
         q: Quaternion<R>,
@@ -224,7 +224,7 @@ fn run<M: Method<N>, R: Real, const N: usize>(
             return refuse(step, Why::InputNotFinite);
         }
         q = M::turn(q, h, inputs);
-        // Renormalising what is too long to have a norm gives a null quaternion.
+        // Renormalising a value whose norm overflows gives a null quaternion.
         if !q.is_finite() || q.is_null() {
             return refuse(step, Why::Overflow);
         }
@@ -232,17 +232,17 @@ fn run<M: Method<N>, R: Real, const N: usize>(
     Ok(q)
 }
 
-/// A step that was not made.
+/// A failed step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("step {step} refused: {why}")]
 pub struct Refused {
-    /// Which of the steps asked for, from 0; those before it were good.
+    /// The index of the step, from 0; those before it succeeded.
     pub step: u64,
-    /// What is wrong with it.
+    /// The reason.
     pub why: Why,
 }
 
-/// Why a step is not made.
+/// Why a step fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Why {
     /// Zero or negative.
@@ -254,16 +254,16 @@ pub enum Why {
     /// A rate or an increment is infinite or NaN.
     #[error("an input is not a finite number")]
     InputNotFinite,
-    /// No input, or not a whole number of steps' inputs.
+    /// No input, or not a multiple of a step's inputs.
     #[error("the inputs do not make a whole number of steps")]
     InputMissing,
-    /// The attitude to start from is infinite or NaN.
+    /// The initial attitude is infinite or NaN.
     #[error("the attitude is not finite")]
     AttitudeNotFinite,
-    /// The attitude to start from is the null quaternion.
+    /// The initial attitude is the null quaternion.
     #[error("the attitude is zero")]
     AttitudeZero,
-    /// The inputs are good, but the result is beyond the largest number of the precision.
+    /// The inputs are valid, but the result exceeds the largest number of the precision.
     #[error("the result overflows")]
     Overflow,
 }

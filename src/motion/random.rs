@@ -1,9 +1,9 @@
-//! Random angular rate within a band: each axis a sum of sines with random frequencies and phases.
+//! Random angular rate within a band: each axis is a sum of sines with random frequencies and phases.
 //!
-//! `w_i(t) = σ·√(2/N)·Σ sin(2π·f_k·t + p_k)`, k = 1 … N: the band [0, B] is cut into N equal slices, f_k is
-//! uniform in the k-th and p_k in a turn (S. O. Rice, *Mathematical analysis of random noise*, 1944, sec. 1.7; the
+//! `w_i(t) = σ·√(2/N)·Σ sin(2π·f_k·t + p_k)`, k = 1 … N: the band [0, B] is cut into N equal slices, f_k is uniform
+//! in the k-th slice and p_k in a turn (S. O. Rice, *Mathematical analysis of random noise*, 1944, sec. 1.7; the
 //! slices after M. Shinozuka and C.-M. Jan, *Digital simulation of random processes*, 1972). The root mean square
-//! is σ, nothing is above B, and the distribution is near to a normal one. It has no closed form of attitude.
+//! is σ, nothing is above B, and the distribution is nearly normal. The attitude has no closed form.
 
 use super::integrated::{BodyRate, Integrated};
 use super::{Built, Context, MotionKind};
@@ -36,14 +36,14 @@ pub(super) static KIND: MotionKind = MotionKind {
     build,
 };
 
-/// Sines an axis.
+/// Sines on each axis.
 const SINES: usize = 24;
 
 #[derive(Debug)]
 struct Sum {
-    /// Of one sine of each axis, rad/s.
+    /// Amplitude of one sine on each axis, rad/s.
     amplitude: [f64; 3],
-    /// (angular frequency in rad/s, phase in rad) of each axis.
+    /// (angular frequency in rad/s, phase in rad) on each axis.
     sines: [[(f64, f64); SINES]; 3],
 }
 
@@ -56,7 +56,7 @@ fn build(values: &Values, context: &Context) -> Built {
     };
     let name = format!("motion/{}/random", context.index);
     let sum = Sum::new(amplitude, bandwidth, random::axes(context.seed, &name));
-    // Without a duration, which is a mistake by itself, the keys alone are checked.
+    // A missing duration is a separate error, so check only the keys.
     let known = Some(context.duration).filter(|&duration| duration < SimTime::FOREVER);
     match Integrated::new(sum, &[0.0, known.unwrap_or_default().seconds()]) {
         Some(motion) => Ok(Box::new(motion)),
@@ -68,7 +68,7 @@ fn build(values: &Values, context: &Context) -> Built {
 }
 
 impl Sum {
-    /// Of this root mean square (rad/s) up to `bandwidth` (Hz).
+    /// A sum with this root mean square (rad/s) up to `bandwidth` (Hz).
     fn new(rms: DVec3, bandwidth: f64, streams: [Stream; 3]) -> Sum {
         let slice = TAU * bandwidth / SINES as f64;
         let sines = streams.map(|mut stream| {
@@ -91,7 +91,7 @@ impl BodyRate for Sum {
 
     fn fastest(&self) -> f64 {
         let highest = self.sines.iter().flatten().fold(0.0, |fastest: f64, (w, _)| fastest.max(*w));
-        // Four times its root mean square is about the fastest it turns.
+        // It rarely turns faster than four times its root mean square.
         let rms = DVec3::from_array(self.amplitude).length() * libm::sqrt(SINES as f64 / 2.0);
         highest.max(4.0 * rms)
     }
@@ -127,7 +127,7 @@ mod tests {
                 square[i] += w[i] * w[i] / (rms[i] * rms[i]) / n as f64;
             }
         }
-        // The standard errors of a mean and of a mean square of n nearly normal numbers, four of them.
+        // Four standard errors of a mean and of a mean square of n nearly normal numbers.
         let error = 1.0 / (n as f64).sqrt();
         for i in 0..3 {
             assert!(mean[i].abs() < 4.0 * error, "mean {}", mean[i]);

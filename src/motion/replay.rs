@@ -1,9 +1,9 @@
-//! A recorded log of attitude or angular rate, played again.
+//! Replays a recorded log of attitude or angular rate.
 //!
-//! An attitude log is met exactly at its rows, with angular rate and angular acceleration continuous between
-//! ([`attitude`]); a rate log is interpolated smoothly and integrated ([`rate`]). Rows that are missing or jump are
-//! [reported](survey), and so are rows that are left out. The log is in the scene's axes. Its first row is the motion's start; after its last the
-//! vehicle holds.
+//! An attitude log matches exactly at its rows, with continuous angular rate and angular acceleration between them
+//! ([`attitude`]). A rate log is interpolated smoothly and integrated ([`rate`]). Missing rows, jumps ([`survey`])
+//! and skipped rows are reported. The log is in the scene's axes. Its first row is the motion's start; after its
+//! last row the vehicle holds.
 
 mod attitude;
 mod columns;
@@ -74,7 +74,7 @@ pub(super) static KIND: MotionKind = MotionKind {
     build,
 };
 
-/// An attitude log that begins nearer than this (rad) to where the vehicle is begins there.
+/// An attitude log that starts closer than this (rad) to the vehicle's attitude starts exactly there.
 const AGREE: f64 = 1e-6;
 
 fn build(values: &Values, context: &Context) -> Built {
@@ -142,7 +142,7 @@ fn attitudes<const N: usize>(
             ),
         ));
     }
-    // Of the two signs of an attitude that which is continuous in time, from the vehicle's on.
+    // Choose the sign of each attitude so that it is continuous in time, starting from the vehicle's.
     let mut last = if context.anywhere && !aligned { knots[0] } else { context.start.q };
     for q in &mut knots {
         *q = if q.dot(last) < 0.0 { -*q } else { *q };
@@ -153,7 +153,7 @@ fn attitudes<const N: usize>(
     Ok(Box::new(AttitudeLog::new(log.grid, &knots, !aligned, warnings)))
 }
 
-/// Every row's attitude in the program's own axes, of length 1.
+/// Every row's attitude in the program's own axes, of unit length.
 fn unit_quaternions<const N: usize>(
     log: &Log<N>,
     axes: Axes,

@@ -1,8 +1,8 @@
 //! Rocking: a sinusoidal angular rate about one fixed axis, as on an oscillating rate table.
 //!
-//! `w(t) = n·A·sin(Wt + p)` about the unit axis n, so that the angle turned is the integral
-//! `A/W·(cos p − cos(Wt + p)) = 2A/W·sin(Wt/2 + p)·sin(Wt/2)` and `q(t) = q₀ ⊗ exp(n·angle)` (IEEE Std 1431-2004
-//! calls the test an angular oscillation). The phase is kept as a hi + lo pair; the product of sines does not cancel.
+//! `w(t) = n·A·sin(Wt + p)` about the unit axis n, so the angle turned is the integral `A/W·(cos p − cos(Wt + p)) =
+//! 2A/W·sin(Wt/2 + p)·sin(Wt/2)` and `q(t) = q₀ ⊗ exp(n·angle)` (IEEE Std 1431-2004 calls the test an angular
+//! oscillation). The phase is a hi + lo pair; the product of sines does not cancel.
 
 use super::{Built, Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;

@@ -1,7 +1,7 @@
 //! Constant angular rate: the paper's cases of one value, roll, pitch, yaw, and several values in turn.
 //!
-//! `q(t) = q₀ ⊗ exp(w·t/2)`. The phase `|w|·t/2` is kept as a hi + lo pair: in plain doubles it errs by
-//! 1.07·10⁻⁹ degrees after an hour at 2000 °/s.
+//! `q(t) = q₀ ⊗ exp(w·t/2)`. The phase `|w|·t/2` is a hi + lo pair: in plain doubles it errs by 1.07·10⁻⁹ degrees
+//! after an hour at 2000 °/s.
 
 use super::{Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;

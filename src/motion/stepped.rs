@@ -1,9 +1,9 @@
-//! Many attitudes of a constant rate, one after another, at a fraction of the cost of the closed form each time.
+//! Many attitudes of a constant rate in sequence, at a fraction of the cost of the closed form.
 //!
-//! Time from the segment's start is cut into cells in which half the angle grows by at most 1/8 rad. At a cell's start the
-//! attitude is the motion's own closed form; within, `q = q_cell ⊗ exp(w·δ/2)` with sine and cosine from their series,
-//! good to half a unit in the last place. Cells lie on a fixed grid, so that an attitude depends on its time alone,
-//! never on which were asked before, and nothing adds up.
+//! Time from the segment's start is cut into cells in which half the angle grows by at most 1/8 rad. At a cell's
+//! start the attitude is the motion's own closed form; within it, `q = q_cell ⊗ exp(w·δ/2)` with sine and cosine
+//! from their series, accurate to half a unit in the last place. Cells lie on a fixed grid, so an attitude depends
+//! only on its time, not on earlier calls, and no error accumulates.
 
 use super::Motion;
 use crate::geometry::{Attitude, Nav, Vector};
@@ -27,14 +27,15 @@ pub(super) struct Stepped {
 }
 
 impl Stepped {
-    /// At this constant rate, rad/s.
+    /// Steps at this constant rate, rad/s.
     pub(super) fn new(rate: DVec3) -> Stepped {
         let half = rate * 0.5e-9;
         let cell_ns = (HALF_ANGLE / half.length()).clamp(1.0, LONGEST) as i64;
         Stepped { half, cell_ns, cell: DQuat::IDENTITY, from: 0, until: 0 }
     }
 
-    /// The attitudes at times `since` the start of the segment, which began at `start`; in any order, but cheap in theirs.
+    /// The attitudes at times `since` the start of the segment, which began at `start`; any order works, increasing
+    /// order is cheap.
     pub(super) fn at<const N: usize>(
         &mut self,
         motion: &dyn Motion,
@@ -48,7 +49,7 @@ impl Stepped {
             self.cell = motion.at(start, SimTime(self.from).exact_seconds()).attitude.q;
         }
         if last >= self.until {
-            // Across two cells: one by one.
+            // Across two cells: compute each separately.
             let mut many = Many { q: [[0.0; N]; 4] };
             for (i, &since) in since.iter().enumerate() {
                 let one = self.at(motion, start, [since]);
@@ -63,8 +64,8 @@ impl Stepped {
         )
     }
 
-    /// So many nanoseconds into the cell. The same operations on each of several columns, which the processor does on
-    /// two at a time.
+    /// The turns at these nanoseconds into the cell. It applies the same operations to each element of several
+    /// columns, which the processor does two at a time.
     #[inline(always)]
     fn within<const N: usize>(&self, ns: [f64; N]) -> Many<N> {
         let DQuat { x, y, z, w } = self.cell;
@@ -95,8 +96,7 @@ impl<const N: usize> Many<N> {
         Attitude::from_quat(DQuat::from_xyzw(x[i], y[i], z[i], w[i]))
     }
 
-    /// What they make of a nav vector in body axes: [`rotate`](crate::geometry::rotate) by the inverse, as columns
-    /// x, y, z.
+    /// A nav vector in body axes at each: [`rotate`](crate::geometry::rotate) by the inverse, as columns x, y, z.
     pub(super) fn to_body(&self, v: Vector<Nav>) -> [[f64; N]; 3] {
         os::widest(
             #[inline(always)]
@@ -127,7 +127,7 @@ const SINC: [f64; 6] = [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_8
 const COS: [f64; 7] =
     [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
 
-/// The polynomial of these coefficients, the constant one first.
+/// The polynomial with these coefficients, the constant one first.
 #[inline(always)]
 fn series<const N: usize>(square: f64, coefficients: &[f64; N]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * square + coefficient)
@@ -157,7 +157,7 @@ mod tests {
                 let seen = stepped.at(&*motion, start, [t]).to_body(v);
                 assert_eq!(Vector::new(seen[0][0], seen[1][0], seen[2][0]), q.inverse().apply(v));
             }
-            // Several at once, across the ends of cells too, are each as it is alone.
+            // Several at once, also across the ends of cells, equal each one alone.
             for k in 0..2000i64 {
                 let times = [0, 1, 2, 3].map(|i| SimTime((4 * k + i) * 1_234_567));
                 let many = stepped.at(&*motion, start, times);

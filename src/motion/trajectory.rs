@@ -1,4 +1,4 @@
-//! The whole truth of a scene: segments one after another, forces over them, gravity and field.
+//! The whole truth of a scene: a sequence of segments, forces over them, gravity and field.
 
 mod track;
 mod turning;
@@ -11,10 +11,10 @@ use crate::double::Double;
 use crate::geometry::{Attitude, Body, Nav, Rotation, Vector};
 use crate::time::SimTime;
 
-/// What is true at one instant.
+/// The truth at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
-    /// When.
+    /// The time.
     pub t: SimTime,
     /// Body to nav.
     pub attitude: Attitude,
@@ -29,20 +29,20 @@ pub struct Truth {
 /// An external acceleration over `[start, end)`: the paper's `A_ex`. Overlapping ones add.
 #[derive(Clone, Copy, Debug)]
 pub struct Force {
-    /// When it begins.
+    /// Its start.
     pub start: SimTime,
-    /// When it has ended.
+    /// Its end.
     pub end: SimTime,
-    /// What it adds.
+    /// The acceleration it adds.
     pub push: Push,
 }
 
 /// An acceleration in the frame it is fixed in, m/s².
 #[derive(Clone, Copy, Debug)]
 pub enum Push {
-    /// Turns with the vehicle.
+    /// It turns with the vehicle.
     Body(Vector<Body>),
-    /// Keeps its direction over the ground.
+    /// It keeps its direction over the ground.
     Nav(Vector<Nav>),
 }
 
@@ -55,7 +55,7 @@ struct Segment {
 }
 
 impl Segment {
-    /// Where the motion may jump within it.
+    /// The times within it where the motion may jump.
     fn seams(&self) -> impl Iterator<Item = SimTime> {
         let next = |t: &SimTime| self.motion.next_seam(*t).filter(|&seam| self.start + seam < self.end);
         std::iter::successors(next(&SimTime::ZERO), next).map(|seam| self.start + seam)
@@ -69,12 +69,12 @@ pub struct Trajectory {
     forces: Vec<Force>,
     gravity: Vector<Nav>,
     field: Vector<Nav>,
-    /// At t = 0, where it is given.
+    /// At t = 0, if given.
     velocity: Option<Vector<Nav>>,
 }
 
 impl Trajectory {
-    /// Starts at `attitude` and goes through `motions`, each for its time; after the last the vehicle holds.
+    /// Starts at `attitude` and plays each of `motions` for its time; after the last one the vehicle holds.
     /// `gravity` is the acceleration of free fall (m/s²), `field` the magnetic field (µT).
     pub fn new(
         attitude: Attitude,
@@ -95,7 +95,7 @@ impl Trajectory {
         Trajectory { segments, forces, gravity, field, velocity: None }
     }
 
-    /// The sum of the motions' durations: from there on the vehicle holds.
+    /// The sum of the motions' durations: after it the vehicle holds.
     pub fn moving_until(&self) -> SimTime {
         self.segments.last().map_or(SimTime::ZERO, |last| last.start)
     }
@@ -121,7 +121,7 @@ impl Trajectory {
         self.field
     }
 
-    /// The times at which something may jump, as a segment or a force that begins or ends, in no order.
+    /// The times at which something may jump, such as the start or end of a segment or force, in no order.
     pub fn edges(&self) -> impl Iterator<Item = SimTime> + '_ {
         let starts = self.segments.iter().map(|segment| segment.start);
         let within = self.segments.iter().flat_map(Segment::seams);
@@ -134,7 +134,7 @@ impl Trajectory {
         segment.motion.at(segment.attitude, (t - segment.start).exact_seconds())
     }
 
-    /// The external forces, in the order written.
+    /// The external forces, in the scene's order.
     pub fn forces(&self) -> &[Force] {
         &self.forces
     }
@@ -157,7 +157,7 @@ impl Trajectory {
         self.in_segment(segment, t, (t - segment.start).exact_seconds())
     }
 
-    /// The truth at each of `times`, which are in order, appended to `truth`.
+    /// Appends the truth at each of `times`, which are in order, to `truth`.
     pub fn fill(&self, times: &[SimTime], truth: &mut Vec<Truth>) {
         let mut rest = times;
         while let Some(&first) = rest.first() {
@@ -173,7 +173,7 @@ impl Trajectory {
         }
     }
 
-    /// At a constant rate, eight at a time.
+    /// The same at a constant rate, eight at a time.
     fn fill_turning(&self, segment: &Segment, rate: Vector<Body>, times: &[SimTime], truth: &mut Vec<Truth>) {
         let mut stepped = Stepped::new(rate.v);
         let (eights, rest) = times.as_chunks::<8>();
@@ -215,7 +215,7 @@ impl Trajectory {
         self.felt(t, segment.motion.at(segment.attitude, since))
     }
 
-    /// What there is to feel of that.
+    /// Adds what a vehicle with this motion feels.
     fn felt(&self, t: SimTime, Kinematics { attitude, rate, acceleration }: Kinematics) -> Truth {
         let to_body = attitude.inverse();
         let mut force = to_body.apply(acceleration - self.gravity);
@@ -235,8 +235,8 @@ impl Trajectory {
         self.forces.iter().filter(move |force| force.start <= t && t < force.end).map(|force| force.push)
     }
 
-    /// The means of rate, force and field over `[from, to)`, as an integrating sensor sees them; the attitude is
-    /// that at `to`. Exact where the rate is constant, elsewhere to rounding: eight-point Gauss-Legendre panels,
+    /// The means of rate, force and field over `[from, to)`, as an integrating sensor measures them; the attitude
+    /// is that at `to`. Exact where the rate is constant, elsewhere to rounding: eight-point Gauss-Legendre panels,
     /// none of which spans a seam or more than a radian of the motion's fastest part.
     pub fn mean(&self, from: SimTime, to: SimTime) -> Truth {
         let end = self.at(to);
@@ -277,8 +277,8 @@ impl Trajectory {
         self.nodes(segment, from, to, |since, _, weight| add(self.in_segment(segment, from, since), weight));
     }
 
-    /// Where a mean over `[from, to)` looks, none of it beyond a seam: seconds from the segment's start, the share of
-    /// the way that lies behind, and the weight; weights add to 1.
+    /// The nodes of a mean over `[from, to)`, none beyond a seam: seconds from the segment's start, the fraction of
+    /// the interval before the node, and the weight; weights add to 1.
     fn nodes(&self, segment: &Segment, from: SimTime, to: SimTime, mut at: impl FnMut(Double, f64, f64)) {
         let span = (to - from).seconds();
         let panels = (segment.motion.fastest() * span).ceil().max(1.0);
@@ -359,7 +359,7 @@ mod tests {
         path.forces.push(Force { start: SimTime(NANOS), end: SimTime(2 * NANOS), push });
         let (from, to) = (SimTime(NANOS / 2), SimTime(2 * NANOS));
         let mean = path.mean(from, to);
-        // A midpoint sum, edges on step bounds: good to 10⁻⁹.
+        // A midpoint sum, edges on step bounds: accurate to 10⁻⁹.
         let steps = 600_000;
         let (mut force, mut rate) = (Vector::ZERO, Vector::ZERO);
         for i in 0..steps {
@@ -371,7 +371,7 @@ mod tests {
         assert!((mean.rate - rate).length() < 1e-9, "{:?} against {rate:?}", mean.rate);
     }
 
-    /// The roll rate of a turn jumps where the roll ends: 1 ms of it in a mean over 4 ms is a quarter.
+    /// The roll rate of a turn jumps where the roll ends: a mean over 4 ms that contains 1 ms of it is a quarter.
     #[test]
     fn a_mean_over_a_jump_within_a_motion_is_exact() {
         #[derive(Debug)]
@@ -429,8 +429,8 @@ mod tests {
         }
     }
 
-    /// An error-free averaged gyro at 70 Hz, which fits no key, gives back the attitude of a motion that turns about
-    /// one axis from key to key.
+    /// An error-free averaged gyro at 70 Hz, which matches no key, reproduces the attitude of a motion that turns
+    /// about one axis from key to key.
     #[test]
     fn reintegrating_the_mean_rate_of_waypoints_gives_back_the_attitude() {
         let (motion, seams, length) = super::super::waypoints::tests::example();

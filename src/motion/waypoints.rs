@@ -1,10 +1,10 @@
 //! Attitudes at given times, with a smooth turn about one axis from each to the next.
 //!
-//! Over an interval of length T from q₀ to q₁, with u = t/T and r = log(q₀* ⊗ q₁):
-//! `q = q₀ ⊗ exp(s(u)·r)`, `w = s′(u)/T·r`, `s(u) = 10u³ − 15u⁴ + 6u⁵`: the least-jerk course from rest to rest
-//! (T. Flash and N. Hogan, *The coordination of arm movements*, J. Neuroscience 5(7), 1985). Attitude, rate and
-//! angular acceleration are continuous throughout, the last two 0 at each key: it comes to rest there, as a rate
-//! table does. Each turn goes the shorter way.
+//! Over an interval of length T from q₀ to q₁, with u = t/T and r = log(q₀* ⊗ q₁): `q = q₀ ⊗ exp(s(u)·r)`, `w =
+//! s′(u)/T·r`, `s(u) = 10u³ − 15u⁴ + 6u⁵`: the minimum-jerk course from rest to rest (T. Flash and N. Hogan, *The
+//! coordination of arm movements*, J. Neuroscience 5(7), 1985). Attitude, rate and angular acceleration are
+//! continuous throughout, the last two 0 at each key: it comes to rest there, like a rate table. Each turn goes the
+//! shorter way.
 
 use super::{Built, Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;
@@ -65,18 +65,18 @@ fn build(values: &Values, context: &Context) -> Built {
     Ok(Box::new(Waypoints::new(context.start, keys)))
 }
 
-/// A first key at 0 s that is nearer than this (rad) to where the vehicle is says the same.
+/// A first key at 0 s that is closer than this (rad) to the vehicle's attitude counts as equal.
 const AGREE: f64 = 1e-9;
 
 impl Waypoints {
-    /// From `start` at 0 s; a key at 0 s adds nothing.
+    /// A course from `start` at 0 s; a key at 0 s adds nothing.
     fn new(start: Attitude, keys: &[(SimTime, Attitude)]) -> Waypoints {
         let mut legs = Vec::with_capacity(keys.len());
         let mut here = (SimTime::ZERO, start.q);
         for &(end, key) in keys.iter().filter(|(t, _)| *t > SimTime::ZERO) {
             let (start, from) = here;
             legs.push(Leg { start, end, from, turn: log(from.conjugate() * key.q) });
-            // Of the key's two signs that which the turn leads to: the sign is continuous in time.
+            // Choose the sign of the key that the turn leads to: the sign is continuous in time.
             here = (end, if from.dot(key.q) < 0.0 { -key.q } else { key.q });
         }
         if legs.is_empty() {
@@ -123,7 +123,7 @@ pub(super) mod tests {
         let at = |ms: i64, v: [f64; 3]| {
             (SimTime(ms * NANOS / 1000), Attitude::from_quat(exp(DVec3::from_array(v))))
         };
-        // One is past half a turn from the one before, and one comes back to where it was.
+        // One key is more than half a turn after the previous one, and one returns to an earlier attitude.
         vec![
             at(500, [0.3, 0.0, 0.0]),
             at(1700, [0.3, -0.7, 2.5]),
@@ -132,7 +132,7 @@ pub(super) mod tests {
         ]
     }
 
-    /// A motion, where it has seams, and its length.
+    /// A motion, the times of its seams, and its length.
     pub(in crate::motion) fn example() -> (Box<dyn Motion>, Vec<SimTime>, SimTime) {
         let seams = keys().iter().map(|(t, _)| *t).collect();
         (Box::new(Waypoints::new(Attitude::IDENTITY, &keys())), seams, SimTime(4 * NANOS))

@@ -1,4 +1,4 @@
-//! Vectors and quaternions of either precision: what `glam` has in two families of types, a method needs in one.
+//! Vectors and quaternions generic over precision: `glam` has a separate family of types for each.
 
 use super::Real;
 use glam::{DQuat, DVec3};
@@ -44,14 +44,14 @@ impl<R: Real> Triple<R> {
         self.dot(self).sqrt()
     }
 
-    /// No component is infinite or NaN.
+    /// Whether no component is infinite or NaN.
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
     }
 
     /// The quaternion of the rotation vector (rad): `[cos(|v|/2), sin(|v|/2)·v/|v|]`.
     ///
-    /// Good to a few units in the last place from angles so small that their square underflows up to the largest
+    /// Accurate to a few units in the last place, from angles so small that their square underflows to the largest
     /// whose square does not overflow.
     pub fn exp(self) -> Quaternion<R> {
         let half = R::of(0.5) * self.length();
@@ -82,17 +82,17 @@ impl<R: Real> Quaternion<R> {
         self * (R::of(1.0) / self.norm())
     }
 
-    /// No component is infinite or NaN.
+    /// Whether no component is infinite or NaN.
     pub fn is_finite(self) -> bool {
         self.w.is_finite() && self.v.is_finite()
     }
 
-    /// Every component is zero: no attitude.
+    /// Whether every component is zero: no attitude.
     pub fn is_null(self) -> bool {
         self == self * R::of(-1.0)
     }
 
-    /// `½·q ⊗ w`: how fast the attitude changes at the body's angular rate `w`.
+    /// `½·q ⊗ w`: the rate of change of the attitude at the body's angular rate `w`.
     pub fn derivative(self, w: Triple<R>) -> Self {
         let w = w * R::of(0.5);
         Quaternion { w: R::of(0.0) - self.v.dot(w), v: w * self.w + self.v.cross(w) }

@@ -1,35 +1,36 @@
 //! `method = "auto"`: the cheapest method and step that keep a reference within a tolerance in one scene.
 //!
-//! Nothing is estimated from a formula, because a method's error depends on the motion and the truth is at hand: each
-//! candidate, the cheapest first, is run over the whole scene until it leaves the tolerance. Most leave it early, so that
-//! finding the one that stays costs about as much as using it.
+//! A method's error depends on the motion and the truth is available, so no formula estimates it: each candidate,
+//! the cheapest first, runs over the whole scene until it leaves the tolerance. Most leave it early, so the search
+//! costs about as much as one run of the result.
 
 use super::{METHODS, MethodKind, integrated};
 use crate::motion::Trajectory;
 use crate::time::{Rate, SimTime};
 use std::fmt;
 
-/// A step may last from 2¹⁰ of the sensor's intervals …
+/// A step lasts at most 2¹⁰ of the sensor's intervals …
 const LONGEST: u32 = 10;
-/// … down to 2⁻⁴ of one: where a sensor is slow for the motion its reference need not be.
+/// … and at least 2⁻⁴ of one: a sensor may be too slow for the motion, but its reference need not be.
 const SHORTEST: u32 = 4;
-/// Fewer steps than this say nothing about a method.
+/// Fewer steps than this show nothing about a method.
 const FEWEST_STEPS: u64 = 8;
-/// The most readings over which methods are compared, half a minute or so: 14 hours at 1 kHz.
+/// The most readings for a comparison of methods, about half a minute of work: 14 hours at 1 kHz.
 const MOST_STEPS: u64 = 50_000_000;
 
-/// What was chosen, and why.
+/// The chosen method, and why.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
     /// The method.
     pub method: &'static MethodKind,
-    /// The samples it reads a second; a method of increments makes one step of several.
+    /// The samples it reads a second; a method with increments makes one step of several.
     pub rate: Rate,
-    /// The largest angle from the truth at the ends of its steps, degrees.
+    /// The largest angle to the truth at the ends of its steps, degrees.
     pub error_deg: f64,
-    /// Nanoseconds that a second of the scene takes, by [`MethodKind::ns_per_step`].
+    /// Nanoseconds for a second of the scene, by [`MethodKind::ns_per_step`].
     pub ns_per_simulated_s: f64,
-    /// The dearest of the cheaper ones, which did not stay within the tolerance; none if the cheapest of all did.
+    /// The most expensive of the cheaper candidates, which left the tolerance; `None` if the cheapest of all stayed
+    /// within.
     pub missed: Option<Missed>,
 }
 
@@ -65,11 +66,11 @@ pub struct Missed {
     pub method: &'static MethodKind,
     /// The samples it reads a second.
     pub rate: Rate,
-    /// How many candidates were cheaper than the one chosen.
+    /// How many candidates were cheaper than the chosen one.
     pub among: usize,
 }
 
-/// Nothing stays within the tolerance.
+/// No method stays within the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ToleranceError {
     /// Every candidate left it.
@@ -77,12 +78,12 @@ pub enum ToleranceError {
         "no method at any rate up to {fastest} stays within {tolerance_deg} deg in this scene: raise the tolerance"
     )]
     Unmet {
-        /// As asked for, degrees.
+        /// The requested tolerance, degrees.
         tolerance_deg: f64,
-        /// The finest tried.
+        /// The highest rate tried.
         fastest: Rate,
     },
-    /// The scene lasts longer than is tried.
+    /// The scene is longer than the limit for a comparison.
     #[error(
         "choosing a method compares many over all of {end} at {rate}, {ticks} steps each, above the limit of {MOST_STEPS}: name a `method`, or shorten the scene"
     )]
@@ -102,13 +103,13 @@ pub enum ToleranceError {
     },
 }
 
-/// The cheapest method and step whose attitude, from the truth at 0 on, is never further than `tolerance_deg` from the
-/// truth at the ends of its steps in `[0, end)`; steps are from 2¹⁰ to 2⁻⁴ intervals of `rate`.
+/// The cheapest method and step whose attitude, starting from the truth at 0, stays within `tolerance_deg` of the
+/// truth at the ends of its steps in `[0, end)`. Steps are from 2¹⁰ to 2⁻⁴ intervals of `rate`.
 ///
 /// The same must hold with steps half as long: a step as long as an oscillation's period meets the truth by chance.
 ///
 /// # Errors
-/// None of them does, it takes longer than a scene is checked for, or `end` comes before eight steps of any.
+/// No method qualifies, the scene is longer than the limit, or `end` comes before eight steps of any method.
 pub fn choose(
     trajectory: &Trajectory,
     rate: Rate,
@@ -141,7 +142,7 @@ pub fn choose(
     Err(ToleranceError::Unmet { tolerance_deg, fastest })
 }
 
-/// A method with its rate.
+/// A method at a rate.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     method: &'static MethodKind,
@@ -171,7 +172,7 @@ fn candidates(rate: Rate, end: SimTime) -> Vec<Candidate> {
     candidates
 }
 
-/// The largest angle from the truth in degrees, unless it exceeds the tolerance or a step is refused.
+/// The largest angle to the truth in degrees; `None` if it exceeds the tolerance or a step fails.
 fn error(
     trajectory: &Trajectory,
     rate: Rate,
@@ -183,7 +184,7 @@ fn error(
     for step in integrated(trajectory, rate, end, method) {
         let step = step.ok()?;
         let error = step.attitude.angle_to(trajectory.at(step.t).attitude).to_degrees();
-        // Written so that what is not a number is refused too.
+        // Written so that NaN fails too.
         let within = error <= tolerance_deg;
         if !within {
             return None;

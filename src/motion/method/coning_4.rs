@@ -13,10 +13,10 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Coning4, 4>(
 
 /// `q ← q ⊗ exp(a + b + c + d + (54·a + 92·b + 214·c)/105 × d)`.
 ///
-/// Order 3 on smooth motion; its drift under narrow coning is of order 8. The products of increments that are alike
-/// under coning, those the same number of samples apart, are gathered on d ("compressed"): exact there, but no
-/// longer even in time, so that a manoeuvre costs an order. Four increments, one quaternion product, a sine and a
-/// cosine a step, which is four samples long. Source: M. Ignagni, *Efficient class of optimized coning compensation
+/// Order 3 on smooth motion; its drift under narrow coning is of order 8. Under coning, products of increments the
+/// same number of samples apart are equal, so they are gathered on d ("compressed"). That is exact there, but no
+/// longer even in time, so a manoeuvre costs an order. Four increments, one quaternion product, a sine and a cosine
+/// a step, which is four samples long. Source: M. Ignagni, *Efficient class of optimized coning compensation
 /// algorithms*, J. Guidance, Control, and Dynamics 19 (1996).
 #[derive(Debug)]
 pub struct Coning4;

@@ -1,4 +1,4 @@
-//! Attitude from gravity and the magnetic field: what an accelerometer and a magnetometer say at rest.
+//! Attitude from gravity and the magnetic field: what an accelerometer and a magnetometer give at rest.
 
 use crate::geometry::{Attitude, Body, Nav, Vector};
 use glam::{DMat3, DQuat, DVec3};
@@ -9,24 +9,23 @@ const PARALLEL: f64 = 1e-6;
 /// Why two vectors give no attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Degenerate {
-    /// Nothing tells up from down.
+    /// No vector shows up from down.
     #[error("the specific force is zero (or not finite): up and down are undefined")]
     NoForce,
-    /// Nothing tells the heading.
+    /// No vector shows the heading.
     #[error("the magnetic field is zero (or not finite): heading is undefined")]
     NoField,
-    /// As at a magnetic pole.
+    /// Gravity and field are parallel, as at a magnetic pole.
     #[error("the magnetic field is along the specific force, as at a magnetic pole: heading is undefined")]
     Parallel,
 }
 
-/// The attitude that takes the body's `force` and `field` to `up` (specific force at rest, −g) and `north` in nav.
+/// The attitude that maps the body's `force` and `field` to `up` (specific force at rest, −g) and `north` in nav.
 ///
-/// TRIAD: the two triads `x = f/|f|`, `y = x×m/|x×m|`, `z = x×y` are laid one on the other, so that force is met
-/// exactly and field as closely as the angle between them allows. Scale does not matter: only directions are used.
-/// Source: H. Black, *A passive system for determining the attitude of a satellite*, AIAA Journal 2 (1964);
-/// M. Shuster, S. Oh, *Three-axis attitude determination from vector observations*, J. Guidance and Control 4
-/// (1981).
+/// TRIAD aligns the two triads `x = f/|f|`, `y = x×m/|x×m|`, `z = x×y`: force matches exactly, field as closely as
+/// the angle between them allows. Only directions count, not scale. Source: H. Black, *A passive system for
+/// determining the attitude of a satellite*, AIAA Journal 2 (1964); M. Shuster, S. Oh, *Three-axis attitude
+/// determination from vector observations*, J. Guidance and Control 4 (1981).
 pub fn ecompass(
     force: Vector<Body>,
     field: Vector<Body>,

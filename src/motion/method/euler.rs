@@ -14,8 +14,8 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Euler, 1>(
 /// `q ← (q + h·½·q⊗w(t)) / |…|`: the tangent at the step's start.
 ///
 /// Order 1; order 2 at constant rate, where a step errs by (|w|h)³/12. One rate, one quaternion product and a
-/// square root a step. Source: L. Euler, *Institutionum calculi integralis* I (1768); the renormalising is
-/// what every flight code adds.
+/// square root a step. Source: L. Euler, *Institutionum calculi integralis* I (1768); every flight code adds the
+/// renormalising.
 #[derive(Debug)]
 pub struct Euler;
 

@@ -13,8 +13,8 @@ pub(super) static KIND: MethodKind = MethodKind::of::<ExpAverage, 2>(
 
 /// `q ← q ⊗ exp(h·(w(t) + w(t+h))/2)`.
 ///
-/// Order 2, exact at constant rate. One new rate, one quaternion product, a sine and a cosine a step. It is what a
-/// filter does with samples of a gyroscope and no thought. Source: A. Iserles, H. Munthe-Kaas, S. Nørsett,
+/// Order 2, exact at constant rate. One new rate, one quaternion product, a sine and a cosine a step. It is the
+/// straightforward way to use samples of a gyroscope in a filter. Source: A. Iserles, H. Munthe-Kaas, S. Nørsett,
 /// A. Zanna, *Lie-group methods*, Acta Numerica 9 (2000): the Magnus series' first term by the trapezoidal rule.
 #[derive(Debug)]
 pub struct ExpAverage;

@@ -11,7 +11,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Increment1, 1>(
     22,
 );
 
-/// `q ← q ⊗ exp(a)`, a the integral of the rate over the step.
+/// `q ← q ⊗ exp(a)`, where a is the integral of the rate over the step.
 ///
 /// Order 2, exact while the axis of rotation does not turn. Under coning of half-angle a at W rad/s it drifts by
 /// `½·W·sin²(a)·(1 − sin(Wh)/(Wh))` rad/s. One increment, one quaternion product, a sine and a cosine a step.

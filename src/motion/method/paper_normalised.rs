@@ -11,7 +11,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<PaperNormalised, 2>(
     30,
 );
 
-/// [`Paper`]'s step divided by its norm: the norm no longer grows, the angle errs by θ³/24 a step all the same.
+/// [`Paper`]'s step divided by its norm: the norm no longer grows, but the angle still errs by θ³/24 a step.
 ///
 /// Order 2. One new rate, one quaternion product, one cosine and a square root a step. Source: as [`Paper`].
 #[derive(Debug)]

@@ -1,10 +1,10 @@
-//! A polynomial through eight increments, and the attitude it leads to.
+//! A polynomial through eight increments, and the attitude that follows from it.
 
 use super::{DOUBLE, Input, Method, MethodKind, Quaternion, Real, Triple};
 
-/// Increments a step.
+/// Increments in a step.
 const N: usize = 8;
-/// Terms of the attitude's series at most: enough for some 70 rad a step in double precision.
+/// The most terms of the attitude's series: enough for about 70 rad a step in double precision.
 const TERMS: usize = 96;
 
 pub(super) static KIND: MethodKind = MethodKind::of::<PolynomialFit, N>(
@@ -16,15 +16,15 @@ pub(super) static KIND: MethodKind = MethodKind::of::<PolynomialFit, N>(
     463,
 );
 
-/// Fits the polynomial of degree 7 whose integrals are the eight increments, and solves `Q̇ = ½·Q⊗w` for it:
-/// `q ← q ⊗ Q(−1)* ⊗ Q(1)`, time running over [−1, 1] and Q(0) = 1.
+/// Fits the polynomial of degree 7 whose integrals are the eight increments, and solves `Q̇ = ½·Q⊗w` for it: `q ← q
+/// ⊗ Q(−1)* ⊗ Q(1)`, with time in [−1, 1] and Q(0) = 1.
 ///
-/// Q is the limit of Picard's iteration `Q ← 1 + ½∫Q⊗w`. For a polynomial w the limit is a power series each
-/// of whose coefficients follows from those before, `Q_{k+1} = Σ_j Q_{k−j}⊗w_j / (2(k+1))`, so that it is reached
-/// in one pass, which ends when eight coefficients in a row no longer count.
+/// Q is the limit of Picard's iteration `Q ← 1 + ½∫Q⊗w`. For a polynomial w the limit is a power series in which
+/// each coefficient follows from earlier ones, `Q_{k+1} = Σ_j Q_{k−j}⊗w_j / (2(k+1))`. One pass therefore reaches
+/// it; the pass ends when eight coefficients in a row are negligible.
 ///
-/// Order 10: the fit's remainder is of order 8, its integral vanishes at every sample, and the lowest term of what
-/// is left is odd about the middle. Eight increments, some 100 to 200 quaternion products a step, which is eight
+/// Order 10: the fit's remainder is of order 8, its integral vanishes at every sample, and the lowest remaining
+/// term is odd about the middle. Eight increments, some 100 to 200 quaternion products a step, which is eight
 /// samples long; no sine. Source: Y. Wu, *RodFIter: attitude reconstruction from inertial measurement by functional
 /// iteration*, IEEE Trans. Aerospace and Electronic Systems 54 (2018); Y. Wu, G. Yan, *Attitude reconstruction from
 /// inertial measurements: QuatFIter and its comparison with RodFIter*, ibid. 55 (2019). They iterate Chebyshev
@@ -39,8 +39,8 @@ impl Method<N> for PolynomialFit {
     }
 }
 
-/// The coefficients of w by powers of time over [−1, 1]. Only the departures from the mean go through the matrix,
-/// so that a constant rate is met exactly.
+/// The coefficients of w by powers of time over [−1, 1]. Only the deviations from the mean go through the matrix,
+/// so that a constant rate is exact.
 fn fit<R: Real>(increments: &[Triple<R>; N]) -> [Triple<R>; N] {
     let [first, rest @ ..] = increments;
     let mean = rest.iter().fold(*first, |sum, &a| sum + a) * R::of(1.0 / N as f64);
@@ -75,16 +75,17 @@ fn half_turns<R: Real>(w: &[Triple<R>; N]) -> (Quaternion<R>, Quaternion<R>) {
     (even + odd * R::of(-1.0), even + odd)
 }
 
-/// Row j, column m: what the increment m adds to the coefficient of tʲ.
+/// Row j, column m: the contribution of increment m to the coefficient of tʲ.
 static FIT: [[f64; N]; N] = fit_matrix();
 
-/// The integral of w from −1 is interpolated at y = −4, …, 4 = 4t, where it is the sum of the increments so far,
-/// and differentiated. Lagrange's polynomials there have whole coefficients over 8!, so each entry is rounded once.
+/// Interpolates the integral of w from −1 at y = −4, …, 4 = 4t, where it is the sum of the increments so far, and
+/// differentiates it. Lagrange's polynomials there have integer coefficients over 8!, so each entry is rounded
+/// once.
 const fn fit_matrix() -> [[f64; N]; N] {
     let mut matrix = [[0.0; N]; N];
     let mut j = 0;
     while j < N {
-        // The sum of increments at node k holds increment m if k > m: sum from the last node down.
+        // The sum of increments at node k includes increment m if k > m: sum from the last node down.
         let mut sum = 0;
         let mut m = N;
         while m > 0 {

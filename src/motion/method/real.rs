@@ -1,13 +1,13 @@
-//! The numbers a method may be computed in.
+//! The number types of a method.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{MethodKind, Run};
 
-/// Single or double precision: what a method needs of a number and no more.
+/// Single or double precision: the operations that a method needs of a number.
 ///
-/// Elementary functions are those of `libm`, so that a result does not depend on the machine.
+/// Elementary functions come from `libm`, so that a result does not depend on the machine.
 pub trait Real:
     Copy
     + Debug
@@ -21,14 +21,14 @@ pub trait Real:
     + Sync
     + 'static
 {
-    /// As the study's `precision` column spells it.
+    /// Its name in the study's `precision` column.
     const NAME: &'static str;
-    /// Below it `sin(x)/x` rounds to 1: its next term, x²/6, is under half a unit in the last place.
+    /// Below it `sin(x)/x` rounds to 1: the next term, x²/6, is under half a unit in the last place.
     const TINY: Self;
     /// The distance from 1 to the next number.
     const EPSILON: Self;
 
-    /// The nearest number of this precision; folded by the compiler where `x` is a constant.
+    /// The nearest number of this precision; the compiler folds a constant `x`.
     fn of(x: f64) -> Self;
     /// The same number in double precision.
     fn double(self) -> f64;
@@ -36,9 +36,9 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
-    /// Neither infinite nor NaN.
+    /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// How `method` is run in this precision.
+    /// The function that runs `method` in this precision.
     fn runner(method: &MethodKind) -> Run<Self>;
 }
 

@@ -1,6 +1,6 @@
 //! The reference attitude as the paper computes it: from error-free readings, by a named method.
 //!
-//! It stands beside the exact truth, it never replaces it.
+//! It supplements the exact truth and never replaces it.
 
 use super::{Degenerate, Input, METHODS, MethodKind, Quaternion, Refused, Triple, ecompass, find};
 use crate::geometry::Attitude;
@@ -11,29 +11,29 @@ use glam::DQuat;
 /// Why there is no reference.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReferenceError {
-    /// No such method.
+    /// There is no such method.
     #[error("no method `{name}`; the methods are {}", METHODS.map(|method| method.name).join(", "))]
     UnknownMethod {
-        /// As asked for.
+        /// The requested name.
         name: String,
     },
-    /// The method did not make a step.
+    /// The method failed at a step.
     #[error("`{method}` at {t}: {refused}")]
     Refused {
-        /// Which method.
+        /// The method.
         method: &'static str,
-        /// When the step began.
+        /// The start of the step.
         t: SimTime,
-        /// Why.
+        /// The reason.
         #[source]
         refused: Refused,
     },
     /// Accelerometer and magnetometer give no attitude.
     #[error("at {t}: {why}")]
     Degenerate {
-        /// When.
+        /// The time.
         t: SimTime,
-        /// Why.
+        /// The reason.
         #[source]
         why: Degenerate,
     },
@@ -42,21 +42,21 @@ pub enum ReferenceError {
 /// One attitude of a reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// When.
+    /// The time.
     pub t: SimTime,
-    /// Of unit norm, its sign continuous in time.
+    /// Of unit norm; its sign is continuous in time.
     pub attitude: Attitude,
-    /// The norm of the method's own state, which `attitude` is made from.
+    /// The norm of the method's own state, before `attitude` is made from it.
     pub norm: f64,
 }
 
-/// The attitude at the ticks of `rate` in `[0, end)`, integrated from the true gyroscope by `method`, from the true
-/// attitude at 0 on; each is computed when it is asked for, and it stops at the first that is refused.
+/// The attitude at the ticks of `rate` in `[0, end)`, integrated by `method` from the true gyroscope, starting with
+/// the true attitude at 0. It is lazy, and ends at the first failed step.
 ///
-/// A method of rates is given the truth at the times it asks for, to the nanosecond; one of increments the true
-/// means times their intervals, and it has an attitude only at the ends of its steps, every few ticks. At a seam of the
-/// trajectory a sample is that of the segment which begins, as a gyroscope's is. The method's own state is kept as
-/// it leaves it.
+/// A method with rates reads the truth at the times it needs, to the nanosecond. One with increments reads the true
+/// means times their intervals, and has an attitude only at the ends of its steps, every few ticks. At a seam of
+/// the trajectory a sample belongs to the segment that begins, as with a gyroscope. The method's own state is not
+/// modified between steps.
 pub fn integrated(
     trajectory: &Trajectory,
     rate: Rate,
@@ -81,7 +81,7 @@ pub fn integrated(
     })
 }
 
-/// The attitudes of [`integrated`] by the method called `method`, together.
+/// The attitudes of [`integrated`] by the method named `method`, collected.
 pub fn reference(
     trajectory: &Trajectory,
     rate: Rate,
@@ -111,7 +111,7 @@ fn gather(path: &Trajectory, rate: Rate, tick: u64, method: &MethodKind, inputs:
 /// The attitude at the ticks of `rate` in `[0, end)` from the true accelerometer and magnetometer: [`ecompass`] on
 /// gravity's reaction and the field, without forces and without the acceleration of the motion itself.
 ///
-/// Where gravity or field vanish or lie along each other there is none, and the error says which.
+/// Where gravity or field vanish or are parallel there is no attitude, and the error says which.
 pub fn from_accel_mag(
     trajectory: &Trajectory,
     rate: Rate,
@@ -133,7 +133,7 @@ pub fn from_accel_mag(
 struct Sign(Option<DQuat>);
 
 impl Sign {
-    /// `q` with the sign nearer to the last.
+    /// `q` with the sign closer to the previous one.
     fn kept(&mut self, q: DQuat) -> Attitude {
         let turned = self.0.is_some_and(|last| last.dot(q) < 0.0);
         let q = if turned { -q } else { q };

@@ -13,8 +13,8 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Rk4, 3>(
 
 /// The classical Runge-Kutta method on `q̇ = ½·q⊗w(t)` with the true rate at the middle, then renormalised.
 ///
-/// Order 4; at constant rate a step errs by (|w|h)⁵/1920. Two new rates and four quaternion products a step, a square
-/// root. Source: W. Kutta, *Beitrag zur näherungsweisen Integration totaler Differentialgleichungen*, Z. Math.
+/// Order 4; at constant rate a step errs by (|w|h)⁵/1920. Two new rates, four quaternion products and a square root
+/// a step. Source: W. Kutta, *Beitrag zur näherungsweisen Integration totaler Differentialgleichungen*, Z. Math.
 /// Phys. 46 (1901).
 #[derive(Debug)]
 pub struct Rk4;

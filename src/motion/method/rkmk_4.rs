@@ -1,4 +1,4 @@
-//! Runge, Kutta and Munthe-Kaas: the classical method in the rotation vector.
+//! Runge, Kutta and Munthe-Kaas: the classical method applied to the rotation vector.
 
 use super::{DOUBLE, Input, Method, MethodKind, Quaternion, Real, Triple};
 
@@ -11,11 +11,11 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Rkmk4, 3>(
     56,
 );
 
-/// The classical Runge-Kutta method on the rotation vector's equation `φ̇ = w + ½·φ×w + 1/12·φ×(φ×w)`, then
-/// `q ← q ⊗ exp(φ)`. The series goes on with φ⁴: what is left out is beyond the order.
+/// The classical Runge-Kutta method on the rotation vector's equation `φ̇ = w + ½·φ×w + 1/12·φ×(φ×w)`, then `q ← q
+/// ⊗ exp(φ)`. The omitted terms of the series, from φ⁴ on, are beyond the order.
 ///
-/// Order 4, exact at constant rate. Two new rates, one quaternion product, a sine and a cosine a step. Source:
-/// H. Munthe-Kaas, *High order Runge-Kutta methods on manifolds*, Applied Numerical Mathematics 29 (1999); the
+/// Order 4, exact at constant rate. Two new rates, one quaternion product, a sine and a cosine a step. Source: H.
+/// Munthe-Kaas, *High order Runge-Kutta methods on manifolds*, Applied Numerical Mathematics 29 (1999); the
 /// equation with body rates is J. Bortz's (1971).
 #[derive(Debug)]
 pub struct Rkmk4;

@@ -40,7 +40,7 @@ fn at_rest_nothing_turns() {
     }
 }
 
-/// What surrounds the formulas refuses: each reason, at the right step, in both precisions.
+/// The common checks reject bad input: each reason, at the right step, in both precisions.
 #[test]
 fn what_cannot_be_stepped_through_is_refused_with_the_reason() {
     fn refusals<R: Real>(method: &MethodKind) {
@@ -75,7 +75,7 @@ fn what_cannot_be_stepped_through_is_refused_with_the_reason() {
 }
 
 proptest! {
-    /// Whatever is given, an attitude comes out or a reason; never a NaN, never a panic.
+    /// Any input gives an attitude or a reason; never a NaN, never a panic.
     #[test]
     fn no_nan_ever_comes_out(bits in prop::array::uniform8(any::<u64>()), h in any::<u64>()) {
         let [w, x, y, z, a, b, c, d] = bits.map(f64::from_bits);
@@ -92,7 +92,7 @@ proptest! {
         }
     }
 
-    /// A step does not depend on where it starts: turning the start turns the end.
+    /// A step does not depend on its start: turning the start turns the end.
     #[test]
     fn a_step_turns_with_its_start(v in prop::array::uniform3(-3.0..3.0f64), w in prop::array::uniform3(-20.0..20.0f64)) {
         let start = exp(DVec3::from_array(v));
@@ -133,7 +133,7 @@ fn the_reference_has_an_attitude_at_the_end_of_each_whole_step() {
         for (i, (t, attitude)) in series.iter().enumerate() {
             assert_eq!(*t, rate.tick(i as u64 * samples));
             assert!((attitude.q.length() - 1.0).abs() < 1e-15);
-            // To about the turn in one sample, for what a step reads at the seam.
+            // Within about the turn of one sample, because of what a step reads at the seam.
             assert!(attitude.angle_to(path.at(*t).attitude) < 0.01, "{method} at {t}");
         }
         assert!(series.windows(2).all(|pair| pair[0].1.q.dot(pair[1].1.q) > 0.0), "{method}: the sign jumps");

@@ -1,17 +1,17 @@
 //! A smooth course through logged attitudes, exact at each.
 //!
-//! From row i to the next, T seconds later, `q = qᵢ ⊗ exp(ρ(u))`, u = t/T, where the rotation vector ρ is the quintic
-//! with `ρ(0) = 0`, `ρ(1) = r = log(qᵢ* ⊗ qᵢ₊₁)` and with such first and second derivatives at both ends that
-//! angular rate and angular acceleration there are those of the rows. With the right Jacobian
-//! `J(ρ)·v = v − (1 − cos θ)/θ²·ρ×v + (θ − sin θ)/θ³·ρ×(ρ×v)`, θ = |ρ|, the angular rate is `w = J(ρ)·ρ′` and the
-//! angular acceleration its derivative (J. Solà, J. Deray, D. Atchuthan, *A micro Lie theory for state estimation in
-//! robotics*, 2018, eqs. 143-144; N. Mayorov, *Smooth attitude interpolation*, 2018, for the course by rotation
-//! vectors, there cubic and solved for all rows together).
+//! From row i to the next, T seconds later, `q = qᵢ ⊗ exp(ρ(u))`, u = t/T. The rotation vector ρ is the quintic
+//! with `ρ(0) = 0`, `ρ(1) = r = log(qᵢ* ⊗ qᵢ₊₁)` and with first and second derivatives at both ends that give the
+//! rows' angular rate and angular acceleration. With the right Jacobian `J(ρ)·v = v − (1 − cos θ)/θ²·ρ×v + (θ − sin
+//! θ)/θ³·ρ×(ρ×v)`, θ = |ρ|, the angular rate is `w = J(ρ)·ρ′` and the angular acceleration its derivative (J. Solà,
+//! J. Deray, D. Atchuthan, *A micro Lie theory for state estimation in robotics*, 2018, eqs. 143-144; N. Mayorov,
+//! *Smooth attitude interpolation*, 2018, for the course by rotation vectors, there cubic and solved for all rows
+//! together).
 //!
 //! A row's rate and acceleration are the derivatives, at 0, of the quartic through `log(qᵢ* ⊗ qⱼ)` of the five
 //! nearest rows. For even rows the attitude between them is of fifth order in their interval, the rate of fourth.
-//! Across a gap it turns about one axis at one rate, the shorter way, and no row beyond is asked: of what happened
-//! there nothing is known.
+//! Across a gap it turns about one axis at one rate, the shorter way, and uses no row beyond the gap, because
+//! nothing is known of what happened there.
 
 use super::grid::Grid;
 use crate::double::Double;
@@ -26,7 +26,7 @@ pub(super) struct AttitudeLog {
     grid: Grid,
     knots: Vec<Knot>,
     fastest: f64,
-    /// Whether it is where the log says, not turned to where it finds the vehicle.
+    /// Whether it uses the logged attitude itself, not turned to the vehicle's attitude at the start.
     absolute: bool,
     warnings: Vec<String>,
 }
@@ -42,7 +42,7 @@ struct Knot {
 }
 
 impl AttitudeLog {
-    /// Through `quats`, one a row, whose signs are continuous.
+    /// A course through `quats`, one for each row, with continuous signs.
     pub(super) fn new(grid: Grid, quats: &[DQuat], absolute: bool, warnings: Vec<String>) -> AttitudeLog {
         let mut knots = Vec::with_capacity(quats.len());
         let take = |w: DVec3, a: DVec3| knots.push(Knot { q: quats[knots.len()], w, a });
@@ -54,7 +54,7 @@ impl AttitudeLog {
         AttitudeLog { grid, knots, fastest, absolute, warnings }
     }
 
-    /// The rotation vector from row `i` and its derivative, at the share `u` of the interval of `span` seconds.
+    /// The rotation vector from row `i` and its derivative, at the fraction `u` of the interval of `span` seconds.
     fn course(&self, i: usize, span: f64, u: f64) -> (DVec3, DVec3) {
         let (from, to) = (self.knots[i], self.knots[i + 1]);
         let r = log(from.q.conjugate() * to.q);
@@ -74,10 +74,10 @@ impl AttitudeLog {
     }
 }
 
-/// The rotation vector from row `i` to row `j`, of its equivalents the one that goes on from the row between.
+/// The rotation vector from row `i` to row `j`; of the equivalent ones, that which continues from the row between.
 fn turn(quats: &[DQuat], i: usize, j: usize) -> DVec3 {
     let direct = log(quats[i].conjugate() * quats[j]);
-    // Signs are continuous: below 120° nothing else can be meant.
+    // Signs are continuous: below 120° the vector is unambiguous.
     if i.abs_diff(j) < 2 || quats[i].dot(quats[j]) > 0.5 {
         return direct;
     }
@@ -106,7 +106,7 @@ impl Jacobian {
         let squared = rho.length_squared();
         let s = squared;
         if squared < 0.0025 {
-            // The series; the terms left out are below 10⁻¹³.
+            // The series; the omitted terms are below 10⁻¹³.
             return Jacobian {
                 rho,
                 a: 0.5 - s / 24.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0)),
@@ -123,19 +123,19 @@ impl Jacobian {
         Jacobian { rho, a, b, c, da: (2.0 * sine * cosine / angle - 2.0 * a) / s, db: (a - 3.0 * b) / s }
     }
 
-    /// From a rotation vector's derivative to the angular rate.
+    /// Converts a rotation vector's derivative to the angular rate.
     fn apply(&self, v: DVec3) -> DVec3 {
         let once = self.rho.cross(v);
         v - self.a * once + self.b * self.rho.cross(once)
     }
 
-    /// From the angular rate to the rotation vector's derivative.
+    /// Converts the angular rate to the rotation vector's derivative.
     fn undo(&self, w: DVec3) -> DVec3 {
         let once = self.rho.cross(w);
         w + 0.5 * once + self.c * self.rho.cross(once)
     }
 
-    /// What the angular acceleration has besides `J·ρ″`, where ρ′ is `v`.
+    /// The part of the angular acceleration besides `J·ρ″`, where ρ′ is `v`.
     fn change(&self, v: DVec3) -> DVec3 {
         let once = self.rho.cross(v);
         let along = self.rho.dot(v);

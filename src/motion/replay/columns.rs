@@ -1,11 +1,11 @@
-//! Which columns of a log are meant: those that the scene names, else those that are known by their names.
+//! Finds the columns of a log: those that the scene names, else those with known names.
 
 use crate::keys::{KeyError, Values};
 use crate::table::{Attitudes, Choice, Clock, Set, Table, TableError, TimeColumn};
 use crate::time::Rate;
 use std::io::BufRead;
 
-/// What a log has: its columns, and how many inside units one of theirs is.
+/// The columns of a log, with the factor from their unit to ours.
 pub(super) enum Turns {
     /// Quaternions, w first.
     Quaternion([usize; 4]),
@@ -15,14 +15,14 @@ pub(super) enum Turns {
     Rate([usize; 3], f64),
 }
 
-/// When the rows of a log are.
+/// The times of a log's rows.
 pub(super) struct When {
     pub clock: Clock,
-    /// How many ns the unit is that the scene gives its column.
+    /// The unit that the scene gives for the time column, in ns.
     pub ns: Option<i64>,
 }
 
-/// The keys of columns of which one at most is given.
+/// The keys for columns; at most one may be given.
 const TURNS: [&str; 3] = ["quaternion", "euler", "angular_rate"];
 
 pub(super) fn at(key: &'static str) -> impl Fn(TableError) -> KeyError {
@@ -35,7 +35,7 @@ pub(super) fn when<R: BufRead>(table: &Table<R>, values: &Values) -> Result<When
         if values.has("time") {
             return Err(KeyError::new("rate", "is given with `time`: keep only one"));
         }
-        // To a billionth of a hertz.
+        // Accurate to a billionth of a hertz.
         let rate =
             (hz.is_finite() && hz * 1e9 < 1e18).then(|| Rate::new((hz * 1e9).round() as u64, 1_000_000_000));
         let rate = rate
@@ -61,7 +61,7 @@ pub(super) fn when<R: BufRead>(table: &Table<R>, values: &Values) -> Result<When
     })
 }
 
-/// The columns of attitude or angular rate; what is odd about them is told.
+/// The columns of attitude or angular rate, with warnings about them.
 pub(super) fn turns<R: BufRead>(
     table: &Table<R>,
     values: &Values,
@@ -98,7 +98,7 @@ pub(super) fn turns<R: BufRead>(
     }
 }
 
-/// The unit of columns that are known by their names, and what is odd about them.
+/// The unit of columns with known names, with warnings about them.
 fn known<R: BufRead>(
     table: &Table<R>,
     set: &Set<3>,
@@ -148,7 +148,7 @@ fn lacking<R: BufRead>(table: &Table<R>, what: &str) -> KeyError {
     KeyError::new("file", message)
 }
 
-/// The places of columns that the scene names.
+/// The indices of columns that the scene names.
 fn picks<R: BufRead, const N: usize>(
     table: &Table<R>,
     key: &'static str,

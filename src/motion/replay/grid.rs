@@ -1,18 +1,18 @@
-//! The times of a log's rows: which rows are around a time, where rows are missing, and derivatives at a row.
+//! The times of a log's rows: the rows around a time, gaps, and derivatives at a row.
 
 use crate::time::SimTime;
 use glam::DVec3;
 use std::ops::Range;
 
-/// Times in order, the first of them 0; at least two.
+/// Times in order, starting at 0; at least two.
 #[derive(Debug)]
 pub(super) struct Grid {
     times: Vec<SimTime>,
-    /// Of the intervals.
+    /// The median of the intervals.
     pub median: SimTime,
 }
 
-/// Rows that a derivative is taken from.
+/// The number of rows for a derivative.
 const NEAR: usize = 5;
 
 impl Grid {
@@ -28,7 +28,7 @@ impl Grid {
         self.times[row]
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub(super) fn len(&self) -> usize {
         self.times.len()
     }
@@ -38,18 +38,18 @@ impl Grid {
         self.times[self.times.len() - 1]
     }
 
-    /// From row `i` to the next, s.
+    /// The interval from row `i` to the next, s.
     pub(super) fn interval(&self, i: usize) -> f64 {
         (self.times[i + 1] - self.times[i]).seconds()
     }
 
-    /// Whether rows are missing after row `i`: more than three times the median interval.
+    /// Whether rows are missing after row `i`: the interval is more than three times the median.
     pub(super) fn is_gap(&self, i: usize) -> bool {
         (self.times[i + 1] - self.times[i]).0 > self.median.0.saturating_mul(3)
     }
 
-    /// The last row at or before `t` that is not the last of all. Rows are mostly even, so it is looked for where
-    /// it would be if they were.
+    /// The last row at or before `t`, except the very last. Rows are mostly even, so the search starts where it
+    /// would be on an even grid.
     pub(super) fn before(&self, t: SimTime) -> usize {
         let last = self.len() - 2;
         let share = t.0 as f64 / self.end().0 as f64;
@@ -70,7 +70,7 @@ impl Grid {
         (t < self.end()).then(|| self.times[self.before(t) + 1])
     }
 
-    /// The nearest rows around row `i` that no gap parts from it, five where there are so many.
+    /// The nearest rows around row `i` without a gap between, five if there are that many.
     fn near(&self, i: usize) -> Range<usize> {
         let (mut from, mut to) = (i, i + 1);
         while from > 0 && i - from < NEAR - 1 && !self.is_gap(from - 1) {
@@ -83,7 +83,7 @@ impl Grid {
         first..to.min(first + NEAR)
     }
 
-    /// For each row the first and second derivative of `value(row, near)`, which is asked for the rows near it.
+    /// The first and second derivative of `value(row, near)` at each row; it is called for the rows near it.
     pub(super) fn derivatives(
         &self,
         mut value: impl FnMut(usize, usize) -> DVec3,

@@ -1,4 +1,4 @@
-//! The rows of a log as numbers: times exact in nanoseconds from the first row, values in inside units.
+//! The rows of a log as numbers: times exact in nanoseconds from the first row, values in our units.
 
 use super::columns::{When, at};
 use super::grid::Grid;
@@ -7,22 +7,22 @@ use crate::table::{Clock, Flaw, Series, Table, TimeUnit, Wanted};
 use crate::time::SimTime;
 use std::io::BufRead;
 
-/// A log of N values a row.
+/// A log with N values in each row.
 pub(super) struct Log<const N: usize> {
-    /// What messages call it.
+    /// The file's name in messages.
     file: String,
-    /// When each row is.
+    /// The time of each row.
     pub grid: Grid,
     /// The values of each row.
     pub rows: Vec<[f64; N]>,
-    /// The line each row stands on.
+    /// The line number of each row.
     lines: Vec<u32>,
-    /// What the user should know of how it was read.
+    /// What the user should know about how it was read.
     pub warnings: Vec<String>,
 }
 
 impl<const N: usize> Log<N> {
-    /// Reads these columns, their values times `unit`; `is_nothing` says which row holds nothing at all.
+    /// Reads these columns and multiplies their values by `unit`; `is_nothing` says which row contains no data.
     pub(super) fn read<R: BufRead>(
         table: Table<R>,
         when: &When,
@@ -93,7 +93,7 @@ fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>)
             (unit.ns(), Some(how))
         }
     };
-    // A long count of a fine unit is beyond what ns hold; from the first row on it is not.
+    // A large count of a fine unit overflows ns; relative to the first row it does not.
     let first = times.ticks[0];
     let from_first = crate::table::Times {
         ticks: times.ticks.iter().map(|t| t.saturating_sub(first)).collect(),
@@ -111,7 +111,7 @@ fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>)
     Ok(Within { from_first: ns.into_iter().map(SimTime).collect(), warning })
 }
 
-/// The unit of times that do not say it, if only one can be meant.
+/// The unit of times that do not name one, if only one is plausible.
 fn guessed<T>(file: &str, series: &Series<T>, column: &str) -> Result<TimeUnit, KeyError> {
     let (unit, is_sure) = series.times.guess();
     if is_sure {
@@ -130,7 +130,7 @@ fn guessed<T>(file: &str, series: &Series<T>, column: &str) -> Result<TimeUnit, 
     ))
 }
 
-/// The first of several like mistakes, and how many more there are.
+/// The first of several similar mistakes, and the number of others.
 pub(super) fn first_of(mistakes: Vec<String>) -> Option<String> {
     let more = mistakes.len().saturating_sub(1);
     let first = mistakes.into_iter().next()?;

@@ -1,9 +1,10 @@
-//! Logged angular rates: a cubic through every two rows with continuous slope, and the attitude that it integrates to.
+//! Logged angular rates: a cubic between every two rows with continuous slope, and the attitude from its integral.
 //!
 //! `w(t) = h₀₀·wᵢ + h₁₀·T·wᵢ′ + h₀₁·wᵢ₊₁ + h₁₁·T·wᵢ₊₁′`, the cubic Hermite polynomial (C. de Boor, *A practical
-//! guide to splines*, 1978, ch. IV). A row's slope is that of the quartic through the five nearest rows, so that the
-//! rate between even rows is of fourth order in their interval. Across a gap it goes straight, and no row beyond is
-//! asked. The attitude is [`Integrated`] with the rows as edges.
+//! guide to splines*, 1978, ch. IV). A row's slope is that of the quartic through the five nearest rows, so the
+//! rate between even rows is of fourth order in their interval. Across a gap the rate is linear and uses no row
+//! beyond the gap. The attitude is
+//! [`Integrated`] with the rows as edges.
 
 use super::grid::Grid;
 use crate::double::Double;
@@ -28,7 +29,7 @@ struct Rates {
 }
 
 impl RateLog {
-    /// Of `rates` (rad/s in body axes), one a row. `None` if it is beyond what [`Integrated`] solves.
+    /// A log of `rates` (rad/s in body axes), one for each row. `None` if it is beyond what [`Integrated`] solves.
     pub(super) fn new(grid: Grid, rates: &[DVec3], warnings: Vec<String>) -> Option<RateLog> {
         let mut knots = Vec::with_capacity(rates.len());
         grid.derivatives(|_, j| rates[j], |slope, _| knots.push((rates[knots.len()], slope)));

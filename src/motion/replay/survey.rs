@@ -1,27 +1,27 @@
-//! What a user should know of a log: where rows are missing, and where it jumps.
+//! Finds missing rows and jumps in a log, for the user.
 //!
-//! A gap is an interval of more than three times the median. A jump is a change from a row to the next that its
+//! A gap is an interval of more than three times the median. A jump is a change between two rows that its
 //! neighbours do not explain (the Hampel identifier, L. Davies and U. Gather, *The identification of multiple
-//! outliers*, JASA 88(423), 1993): the change a second differs from the median of the four before and the four after
-//! by more than ten times the median of what those differ by, and by more than 1 deg of attitude or 10 deg/s of rate
-//! within the interval.
+//! outliers*, JASA 88(423), 1993): the rate of change differs from the median of the four before and the four after
+//! by more than ten times the median of their own differences, and by more than 1 deg of attitude or 10 deg/s of
+//! rate within the interval.
 
 use super::grid::Grid;
 use super::log::Log;
 use crate::geometry::log;
 use glam::{DQuat, DVec3};
 
-/// Changes on each side that one is held against.
+/// Changes on each side to compare with.
 const SIDE: usize = 4;
-/// How many times their spread is beyond belief.
+/// How many times their spread counts as a jump.
 const BEYOND: f64 = 10.0;
-/// The least that counts: of attitude, rad, and of angular rate, rad/s.
+/// The smallest jump: of attitude, rad, and of angular rate, rad/s.
 const LEAST_TURN: f64 = 1.0 * std::f64::consts::PI / 180.0;
 const LEAST_RATE: f64 = 10.0 * std::f64::consts::PI / 180.0;
-/// How many of a sort are shown one by one.
+/// How many of a kind are listed one by one.
 const SHOWN: usize = 3;
 
-/// The first few, and how many more there are.
+/// The first few, and the number of others.
 pub(super) fn some_of(all: Vec<String>) -> impl Iterator<Item = String> {
     let more = all.len().saturating_sub(SHOWN);
     let count = all.len();
@@ -30,7 +30,7 @@ pub(super) fn some_of(all: Vec<String>) -> impl Iterator<Item = String> {
     })
 }
 
-/// Where rows are missing.
+/// The gaps.
 pub(super) fn gaps<const N: usize>(log: &Log<N>) -> impl Iterator<Item = String> {
     let grid = &log.grid;
     let gaps = (0..grid.len() - 1).filter(|&i| grid.is_gap(i)).map(|i| {
@@ -44,13 +44,13 @@ pub(super) fn gaps<const N: usize>(log: &Log<N>) -> impl Iterator<Item = String>
     some_of(gaps.collect())
 }
 
-/// Where an attitude log jumps.
+/// The jumps of an attitude log.
 pub(super) fn attitude_jumps<const N: usize>(log: &Log<N>, quats: &[DQuat]) -> impl Iterator<Item = String> {
     let step = |i: usize| self::log(quats[i].conjugate() * quats[i + 1]);
     jumps(log, step, LEAST_TURN, "deg")
 }
 
-/// Where a rate log jumps.
+/// The jumps of a rate log.
 pub(super) fn rate_jumps<const N: usize>(log: &Log<N>, rates: &[DVec3]) -> impl Iterator<Item = String> {
     jumps(log, |i| rates[i + 1] - rates[i], LEAST_RATE, "deg/s")
 }
@@ -63,7 +63,7 @@ fn jumps<const N: usize>(
 ) -> impl Iterator<Item = String> {
     let grid = &log.grid;
     let jumps = (0..grid.len() - 1).filter(|&i| !grid.is_gap(i)).filter_map(|i| {
-        // Of two neighbours one has changed by half of what is off at least; most need not be asked.
+        // Of two neighbours, one has changed by at least half of the difference; most rows need no closer look.
         let beyond = (step(i).length() > 0.5 * least).then(|| beyond(grid, &step, i, least))??;
         Some(format!(
             "{}: jumps by {:.3} {unit} from the previous row, {:.3} {unit} more than its neighbours explain",

@@ -29,7 +29,7 @@ fn replay(text: &str) -> Box<dyn Motion> {
     build(&values(text), &context()).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
-/// 10° about a cone at 0.37 Hz after a general start: every axis moves, angular acceleration too.
+/// 10° about a cone at 0.37 Hz after a general start: every axis moves, with angular acceleration.
 fn truth(t: Double) -> (Attitude, Vector<Body>) {
     let start = Attitude::from_quat(exp(DVec3::new(0.3, -0.7, 1.1)));
     let now = cone::Cone::new(Double::from(10f64.to_radians()), Double::from(0.37), 1.0).at(start, t);
@@ -59,7 +59,7 @@ fn even(hz: u32, seconds: u64) -> impl Iterator<Item = SimTime> {
     (0..=u64::from(hz) * seconds).map(move |k| Rate::hz(hz).tick(k))
 }
 
-/// Even but for a third of the interval, forth and back.
+/// Even times shifted back and forth by up to a third of the interval.
 fn uneven(hz: u32, seconds: u64) -> impl Iterator<Item = SimTime> {
     let third = NANOS / i64::from(hz) / 3;
     even(hz, seconds).zip(0..).map(move |(t, k)| SimTime(t.0 + [0, third, -third / 2][k % 3]))
@@ -101,7 +101,7 @@ fn the_rate_is_the_derivative_of_the_attitude() {
     }
 }
 
-/// Rate and angular acceleration have no step at a row: one-sided differences meet there.
+/// Rate and angular acceleration have no step at a row: one-sided differences agree there.
 #[test]
 fn rate_and_angular_acceleration_are_continuous_at_the_rows() {
     for text in [attitude_log(uneven(10, 2)), rate_log(uneven(10, 2))] {
@@ -192,7 +192,7 @@ fn after_the_last_row_it_holds() {
 
 #[test]
 fn turns_of_more_than_half_a_turn_in_five_rows_are_followed() {
-    // 100° a row: two rows on, the shorter way would be backwards.
+    // 100° a row: across two rows, the shorter way would be backwards.
     let mut text = String::from("t_s qw qx qy qz\n");
     for k in 0..20 {
         let q = exp(DVec3::new(0.6, 0.0, 0.8) * (f64::from(k) * 100f64.to_radians()));
@@ -206,7 +206,7 @@ fn turns_of_more_than_half_a_turn_in_five_rows_are_followed() {
     }
 }
 
-/// The same log in the ways that logs are written.
+/// The same log in the various formats that logs use.
 #[test]
 fn headers_separators_and_units_are_understood() {
     let rows = [(0.0, 0.0, 1.0, 2.0), (0.1, 3.0, 4.0, 5.0), (0.2, 6.0, 7.0, 8.0)];
@@ -334,7 +334,7 @@ fn gaps_and_jumps_are_told_with_their_line_and_nothing_is_told_of_a_clean_log() 
     assert!(replay(&log(0.0)).warnings().is_empty());
     let warnings = replay(&log(0.1)).warnings().to_vec();
     assert!(warnings.len() == 1 && warnings[0].starts_with("log.csv:63: jumps by 6."), "{warnings:?}");
-    // A rate that rises with the same curve jumps alike: 0.5 rad/s.
+    // A rate that rises with the same curve has the same jumps: 0.5 rad/s.
     let rates = log(0.5).replace("roll_rad,pitch_rad,yaw_rad", "x_rad_s,y_rad_s,z_rad_s");
     let warnings = replay(&rates).warnings().to_vec();
     assert!(warnings.len() == 1 && warnings[0].starts_with("log.csv:63: jumps by 2"), "{warnings:?}");
@@ -351,7 +351,7 @@ fn across_a_gap_it_turns_the_shorter_way_at_one_rate() {
         let now = motion.at(Attitude::IDENTITY, Double::from(t));
         assert!((now.rate.v - turn).length() < 1e-12, "{:?} against {turn}", now.rate);
     }
-    // Beyond the gap it is as near as ever.
+    // Beyond the gap it is as accurate as before.
     let now = motion.at(Attitude::IDENTITY, Double::from(2.0123));
     assert!(truth(Double::from(2.0123)).0.angle_to(now.attitude) < 1e-7);
 }
@@ -379,7 +379,7 @@ fn a_log_begins_where_the_vehicle_is_unless_it_is_turned_there() {
     }
 }
 
-/// Over an interval that fits neither rows nor motion, against panels that stop at each row.
+/// Over an interval that matches neither rows nor motion, against panels that stop at each row.
 #[test]
 fn the_mean_rate_is_the_integral_of_the_rate_across_rows() {
     for text in [attitude_log(uneven(70, 2)), rate_log(uneven(70, 2))] {
@@ -393,7 +393,7 @@ fn the_mean_rate_is_the_integral_of_the_rate_across_rows() {
         );
         let (from, to) = (SimTime(123_456_789), SimTime(789_123_456));
         let mean = path.mean(from, to).rate;
-        // Each interval between rows by itself, in panels of a quarter of it.
+        // Each interval between rows separately, in panels of a quarter of it.
         let mut sum = DVec3::ZERO;
         let mut edges: Vec<_> = uneven(70, 2).filter(|t| from < *t && *t < to).collect();
         edges.extend([from, to]);
@@ -437,7 +437,7 @@ fn rows_that_cannot_be_used_are_left_out_and_told() {
         assert!(angle_between(q, DQuat::from_rotation_z(0.01)) < 1e-9, "{bad}: {q}");
         assert!(warnings.len() == 1 && warnings[0].contains(says), "{bad}: {warnings:?}");
     }
-    // An angular rate of zeros is one.
+    // An angular rate of zeros is valid.
     let still = replay("t_s,wx_rad_s,wy_rad_s,wz_rad_s\n0,0,0,0\n1,0,0,0\n2,0,0,0\n");
     assert_eq!((still.length(), still.warnings().len()), (Some(SimTime(2 * NANOS)), 0));
 }
@@ -463,7 +463,7 @@ fn logs_of_other_programs_are_read_by_the_names_of_their_columns() {
         assert_eq!(warnings.len(), told.len(), "{warnings:?}");
         assert!(told.iter().all(|says| warnings[0].contains(says)), "{warnings:?}");
     }
-    // The first column of the eight is the time, and what follows is named.
+    // The first of the eight columns is the time, and the columns after it are named.
     let imu = "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n0,0,0,0.5,0,0,9.8\n1000000000,0,0,0.5,0,0,9.8\n";
     assert!(angle_between(played(imu, 0.6).0, DQuat::from_rotation_z(0.3)) < 1e-9);
 }

@@ -1,15 +1,16 @@
-//! Where the vehicle is: velocity and position, the integrals of the acceleration that the accelerometer feels.
+//! Velocity and position of the vehicle: the integrals of the acceleration that the accelerometer measures.
 //!
-//! `v̇ = R·f + g`, `ṗ = v` in nav axes, a level plane that does not turn: paths of motions and external forces alike.
-//! From one point of a fixed grid to the next, and from the last one to the time asked for, by the eight-point
-//! Gauss-Legendre panels of a mean: so what is true at t depends on no ticks, and an error stays that of rounding.
+//! `v̇ = R·f + g`, `ṗ = v` in nav axes, a level plane that does not turn, for the paths of motions and for external
+//! forces. It integrates from one point of a fixed grid to the next, and from the last one to the requested time,
+//! with the eight-point Gauss-Legendre panels of a mean. The truth at t is therefore independent of ticks, and
+//! errors stay at rounding.
 
 use super::{Push, Segment, Trajectory};
 use crate::double::Double;
 use crate::geometry::{Euler, Nav, Vector};
 use crate::time::SimTime;
 
-/// From one point of the grid to the next, ns; seams are points too.
+/// Step of the grid, ns; seams are points too.
 const CELL: i64 = 100_000_000;
 
 /// Velocity (m/s) and displacement from the start (m) at one time.
@@ -17,12 +18,13 @@ const CELL: i64 = 100_000_000;
 pub struct Course {
     /// Over the ground.
     pub velocity: Vector<Nav>,
-    /// From where it was at t = 0.
+    /// From the position at t = 0.
     pub position: Vector<Nav>,
 }
 
 impl Course {
-    /// After `dt` seconds with this mean acceleration, and this mean of acceleration times what is left of the time.
+    /// The course after `dt` seconds with this mean acceleration, and this mean of acceleration times remaining
+    /// time.
     fn after(self, dt: f64, mean: Vector<Nav>, moment: Vector<Nav>) -> Course {
         Course {
             velocity: self.velocity + mean * dt,
@@ -31,26 +33,26 @@ impl Course {
     }
 }
 
-/// Follows the vehicle: quick for times in order, right for any.
+/// Follows the vehicle: fast for times in order, correct for any.
 #[derive(Clone, Copy, Debug)]
 pub struct Track {
     edge: SimTime,
     course: Course,
 }
 
-/// A motion that is flown at another speed than its kind says.
+/// A motion whose speed differs from the vehicle's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
-    /// When it begins.
+    /// The start of the motion.
     pub start: SimTime,
-    /// The velocity that its kind means, m/s.
+    /// The velocity that its kind assumes, m/s.
     pub meant: Vector<Nav>,
-    /// The velocity with which the vehicle comes to it, m/s.
+    /// The vehicle's velocity at its start, m/s.
     pub found: Vector<Nav>,
 }
 
 impl Track {
-    /// From the trajectory's start.
+    /// A track from the trajectory's start.
     pub fn new(path: &Trajectory) -> Track {
         Track {
             edge: SimTime::ZERO,
@@ -77,19 +79,19 @@ impl Track {
 }
 
 impl Trajectory {
-    /// The same, begun with this velocity over the ground, m/s.
+    /// The same trajectory with this initial velocity over the ground, m/s.
     pub fn begun_at(self, velocity: Vector<Nav>) -> Trajectory {
         Trajectory { velocity: Some(velocity), ..self }
     }
 
-    /// The velocity at t = 0, m/s: as given, else that of the first motion along the heading; 0 where it turns on the
-    /// spot.
+    /// The velocity at t = 0, m/s: the given one, else that of the first motion along the heading; 0 where it turns
+    /// on the spot.
     pub fn start_velocity(&self) -> Vector<Nav> {
         let own = || self.segments.first().map_or(Vector::ZERO, Segment::meant_velocity);
         self.velocity.unwrap_or_else(own)
     }
 
-    /// The motions with a speed of their own to which the vehicle comes with another velocity, by 1 mm/s and more.
+    /// The motions with their own speed at whose start the vehicle's velocity differs by 1 mm/s or more.
     pub fn misfits(&self) -> Vec<Misfit> {
         let mut track = Track::new(self);
         let of = |segment: &Segment| {
@@ -100,7 +102,7 @@ impl Trajectory {
         self.segments.iter().filter(|segment| segment.motion.speed() > 0.0).filter_map(of).collect()
     }
 
-    /// From `from` to `to`, between which nothing jumps.
+    /// Carries a course from `from` to `to`, between which nothing jumps.
     fn carried(&self, course: Course, segment: &Segment, from: SimTime, to: SimTime) -> Course {
         let (mut mean, mut moment) = (Vector::ZERO, Vector::ZERO);
         if to <= from {
@@ -114,8 +116,8 @@ impl Trajectory {
         course.after((to - from).seconds(), mean, moment)
     }
 
-    /// `R·f + g`, without what cancels: the path's acceleration and the external forces of time `t`; `since` is the
-    /// time in seconds from the segment's start at which it is wanted.
+    /// `R·f + g`, without the parts that cancel: the path's acceleration and the external forces at time `t`.
+    /// `since` is the time of evaluation in seconds from the segment's start.
     fn acceleration(&self, segment: &Segment, t: SimTime, since: Double) -> Vector<Nav> {
         let now = segment.motion.at(segment.attitude, since);
         self.active(t).fold(now.acceleration, |sum, push| {
@@ -128,7 +130,7 @@ impl Trajectory {
 }
 
 impl Segment {
-    /// The velocity over the ground that its motion means at its start, m/s: its speed, along the heading.
+    /// The velocity over the ground that its motion assumes at its start, m/s: its speed, along the heading.
     fn meant_velocity(&self) -> Vector<Nav> {
         let (speed, heading) = (self.motion.speed(), Euler::from_quat(self.attitude.q).yaw);
         Vector::new(libm::cos(heading), libm::sin(heading), 0.0) * speed
@@ -208,7 +210,7 @@ mod tests {
             let across = (half.position - start.position).length();
             assert!((across - 2.0 * radius).abs() < 1e-6, "turn {k}: {across}");
             let t = SimTime(((10.0 + f64::from(k) * turn) * 1e9).round() as i64);
-            // Half a nanosecond of 15 m/s is in the rounding of t.
+            // Half a nanosecond of 15 m/s is the rounding of t.
             let (now, late) = (track.at(&path, t), t.seconds() - 10.0 - f64::from(k) * turn);
             let off = (now.position - start.position - start.velocity * late).length();
             assert!(off < 1e-6, "turn {k}: {off} m");

@@ -1,11 +1,11 @@
-//! Angular acceleration, by differences of the exact angular rate, and means of what follows from it.
+//! Angular acceleration, by differences of the exact angular rate, and means of functions of time.
 
 use super::{GAUSS_LEGENDRE_8, Segment, Trajectory};
 use crate::geometry::{Body, Vector};
 use crate::time::{NANOS, SimTime};
 
-/// Weights of five-point differences of fourth order, and where they stand in steps from the point (Abramowitz &
-/// Stegun, table 25.2): about it, after it, before it.
+/// Weights of five-point differences of fourth order, and their positions in steps from the point (Abramowitz &
+/// Stegun, table 25.2): around it, after it, before it.
 const STENCILS: [(i64, [f64; 5]); 3] = [
     (-2, [1.0, -8.0, 0.0, 8.0, -1.0]),
     (0, [-25.0, 48.0, -36.0, 16.0, -3.0]),
@@ -13,16 +13,16 @@ const STENCILS: [(i64, [f64; 5]); 3] = [
 ];
 
 impl Trajectory {
-    /// The derivative of the angular rate at `t`, rad/s², from the same side of a seam as the rate; a jump of the rate
-    /// itself has none and is left out. By fourth-order differences over 1/500 of the motion's fastest radian:
-    /// 10⁻¹² of the rate a radian off.
+    /// The derivative of the angular rate at `t`, rad/s², from the same side of a seam as the rate. A jump of the
+    /// rate itself has no derivative and is left out. Fourth-order differences over 1/500 of the motion's fastest
+    /// radian err by 10⁻¹² of the rate for each radian.
     pub fn angular_acceleration(&self, t: SimTime) -> Vector<Body> {
         let segment = self.segment(t);
         if segment.motion.constant_rate().is_some() {
             return Vector::ZERO;
         }
         let fits = (0.002 / segment.motion.fastest().max(1e-9) * NANOS as f64).clamp(200.0, 1e6) as i64;
-        // Between two seams that are near each other the step is shorter.
+        // Between two close seams the step is shorter.
         let mut steps = [fits, fits / 8, fits / 64].into_iter().filter(|&h| h > 0);
         let found = steps
             .find_map(|h| Some((h, STENCILS.iter().find(|(first, _)| segment.smooth(t, first * h, 4 * h))?)));
@@ -35,7 +35,7 @@ impl Trajectory {
         sum * (1.0 / (12.0 * SimTime(h).seconds()))
     }
 
-    /// The mean over `[from, to)` of something given at each time, by eight-point Gauss-Legendre panels as in
+    /// The mean over `[from, to)` of a function of time, by eight-point Gauss-Legendre panels as in
     /// [`Trajectory::mean`], at whole nanoseconds.
     pub fn mean_of(&self, from: SimTime, to: SimTime, of: impl Fn(SimTime) -> Vector<Body>) -> Vector<Body> {
         if to <= from {
@@ -63,7 +63,8 @@ impl Trajectory {
 }
 
 impl Segment {
-    /// Whether nothing jumps from `first` to `first + span` ns after `t`, but at `t` itself for what begins there.
+    /// Whether nothing jumps from `first` to `first + span` ns after `t`, except at `t` itself for what begins
+    /// there.
     fn smooth(&self, t: SimTime, first: i64, span: i64) -> bool {
         let left = SimTime((t - self.start).0 + first);
         let right = SimTime(left.0 + span);
