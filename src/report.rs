@@ -1,4 +1,4 @@
-//! Results as data, tables and charts: they read what a run left behind and never reach into one.
+//! Results as data, tables and charts: this room reads what a run has produced and never affects it.
 //!
 //! ```
 //! use ratetable::report::Limit;
@@ -39,7 +39,7 @@ pub struct Report {
     pub version: String,
     /// Whether nothing was lost and every limit held.
     pub ok: bool,
-    /// What did not hold: `sensors.gyro.late_us.p99 = 312 > 200`.
+    /// The limits and conditions that failed: `sensors.gyro.late_us.p99 = 312 > 200`.
     pub failed: Vec<String>,
     /// The scene's name.
     pub scene: String,
@@ -47,27 +47,27 @@ pub struct Report {
     pub seed: u64,
     /// Scene time played, s.
     pub duration_s: f64,
-    /// For how long the vehicle was held still before the scene began, s: in the counts, and not in `duration_s`.
+    /// How long the vehicle was held still before the scene began, s: included in the counts, not in `duration_s`.
     pub rest_s: f64,
-    /// For how long scene time stood still because a link was full (`overload = "stretch"`) or a controller in lockstep took its time, s.
+    /// How long scene time stood still for a full link (`overload = "stretch"`) or a controller in lockstep, s.
     pub stretched_s: f64,
     /// Scene seconds a second, or `max`.
     pub speed: serde_json::Value,
     /// The faults that acted: `gyro stuck from 2 s to 3 s`, `mpu@pty drop from 2 s`.
     pub faults: Vec<String>,
-    /// What it ran on.
+    /// The machine.
     pub host: Host,
     /// Each sensor, counts summed over links.
     pub sensors: Vec<SensorReport>,
     /// Each link.
     pub links: Vec<LinkReport>,
-    /// How well the other side knew its attitude, where it answered.
+    /// How well the other side knew its attitude, if it sent estimates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub attitude: Option<AttitudeReport>,
 }
 
 impl Report {
-    /// Of a scene of which nothing has been played yet.
+    /// The report of a scene that has not played yet.
     pub fn new(scene: &str, seed: u64) -> Report {
         Report {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -79,17 +79,17 @@ impl Report {
     }
 }
 
-/// How well somebody knew the attitude.
+/// How well an estimator knew the attitude.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AttitudeReport {
-    /// Whose estimate it is.
+    /// The name of the estimator.
     pub estimator: String,
-    /// What it amounts to.
+    /// The error figures.
     #[serde(flatten)]
     pub figures: Figures,
 }
 
-/// What a run ran on.
+/// The machine of a run.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Host {
     /// Name and release.
@@ -100,15 +100,15 @@ pub struct Host {
     pub realtime: bool,
     /// Whether the process was locked in memory.
     pub memory_locked: bool,
-    /// Which clock paced it.
+    /// The clock that paced it.
     pub clock: &'static str,
-    /// How the pacing thread waited; absent where nothing is paced.
+    /// How the pacing thread waited; absent if nothing was paced.
     #[serde(flatten)]
     pub pacing: Option<PacingReport>,
 }
 
 impl Host {
-    /// This machine, with so many processors for this process; nothing was paced on it.
+    /// This machine, with this many processors for the process, without pacing.
     pub fn new(cpus: usize) -> Host {
         let name = rustix::system::uname();
         let kernel = format!("{} {}", name.sysname().to_string_lossy(), name.release().to_string_lossy());
@@ -119,11 +119,11 @@ impl Host {
 /// How the pacing thread waited.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct PacingReport {
-    /// Its margin for spinning at the end, as learnt from its own wake-ups, µs.
+    /// Its spin margin, learnt from its own wake-ups, µs.
     pub spin_us: f64,
-    /// Its share of a core while it streamed, writes included.
+    /// Its share of a core while streaming, writes included.
     pub pacing_cpu: f64,
-    /// The processor it was bound to, where it was.
+    /// The processor it was bound to, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pinned_cpu: Option<usize>,
 }
@@ -133,36 +133,37 @@ pub struct PacingReport {
 pub struct SensorReport {
     /// `gyro`, `accel`, `mag`.
     pub name: String,
-    /// Requested, Hz.
+    /// Requested rate, Hz.
     pub rate_hz: f64,
-    /// Delivered: (n − 1)/(t_last − t_first), Hz; absent where nothing is paced, as are lateness and intervals.
+    /// Delivered rate: (n − 1)/(t_last − t_first), Hz. If nothing is paced, this, lateness and intervals are
+    /// absent.
     pub sent_hz: Option<f64>,
-    /// The same at the other end, where known, Hz.
+    /// The same at the other end, if known, Hz.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub received_hz: Option<f64>,
     /// Samples made: `sent + dropped + queued`.
     pub made: u64,
-    /// Samples whose packet the link took.
+    /// Samples in packets that the link took.
     pub sent: u64,
-    /// Samples that a full or broken link, or a newer sample, cost.
+    /// Samples lost to a full or broken link, or to a newer sample.
     pub dropped: u64,
-    /// Those of the dropped that a newer sample replaced because packets are fewer than samples.
+    /// Dropped samples that a newer one replaced, because packets are fewer than samples.
     pub replaced: u64,
     /// Samples still on their way when the run was stopped.
     pub queued: u64,
-    /// The moment just before the write call minus due, µs.
+    /// Time just before the write call minus the due time, µs.
     pub late_us: Option<Late>,
     /// Between two packets of this sensor, µs.
     pub interval_us: Option<Interval>,
-    /// What the write call itself took, µs.
+    /// Duration of the write call itself, µs.
     pub write_us: Option<Spread>,
-    /// What `timing` adds.
+    /// The additional figures of `timing`.
     #[serde(flatten)]
     pub timing: Option<SensorTiming>,
 }
 
 impl SensorReport {
-    /// With every field that a run can have, for limits to be checked against.
+    /// A report with every possible field, to check limits against.
     pub fn shape(name: &str, rate_hz: f64) -> SensorReport {
         SensorReport {
             name: name.into(),
@@ -179,7 +180,7 @@ impl SensorReport {
 /// Lateness, µs.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Late {
-    /// Least.
+    /// Minimum.
     pub min: f64,
     /// Median.
     pub p50: f64,
@@ -187,14 +188,14 @@ pub struct Late {
     pub p99: f64,
     /// 99.9th percentile.
     pub p99_9: f64,
-    /// Greatest.
+    /// Maximum.
     pub max: f64,
 }
 
 /// Intervals, µs.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Interval {
-    /// Least.
+    /// Minimum.
     pub min: f64,
     /// Standard deviation.
     pub std: f64,
@@ -204,7 +205,7 @@ pub struct Interval {
     pub p99: f64,
     /// 99.9th percentile.
     pub p99_9: f64,
-    /// Greatest.
+    /// Maximum.
     pub max: f64,
 }
 
@@ -215,16 +216,16 @@ pub struct Spread {
     pub p50: f64,
     /// 99th percentile.
     pub p99: f64,
-    /// Greatest.
+    /// Maximum.
     pub max: f64,
 }
 
 /// One link.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct LinkReport {
-    /// `PROTOCOL@LINK` as asked for.
+    /// `PROTOCOL@LINK` as requested.
     pub to: String,
-    /// What one connects to.
+    /// What to connect to.
     pub name: String,
     /// Packets made for it: `sent + dropped + queued`.
     pub made: u64,
@@ -232,40 +233,42 @@ pub struct LinkReport {
     pub sent: u64,
     /// The same as `sent`.
     pub packets: u64,
-    /// Their bytes.
+    /// Bytes in those packets.
     pub bytes: u64,
     /// Packets it did not take.
     pub dropped: u64,
     /// Packets still on their way to it when the run was stopped.
     pub queued: u64,
-    /// What happens to a packet that it does not accept in time: `drop-newest`, `drop-oldest`, `stretch`.
+    /// What happens to a packet that the link does not take in time: `drop-newest`, `drop-oldest`, `stretch`.
     pub overload: String,
-    /// The most bytes that it had taken and the other side had not, where the system tells, looked at every 20 ms.
+    /// The most bytes in the link's buffers that the other side had not read, sampled every 20 ms; absent if the
+    /// system does not tell.
     pub queue_bytes: Option<u64>,
-    /// Bytes sent a second, first to last packet, against what the baud rate carries (8N1), where there is one.
+    /// Bytes sent a second, from first to last packet, relative to the capacity of the baud rate (8N1), if there is
+    /// one.
     pub utilisation: Option<f64>,
-    /// The speed of the UART whose time a pty took.
+    /// The speed of the UART that a pty emulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub paced_baud: Option<u32>,
     /// When the port was unplugged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaps: Option<Gaps>,
-    /// Packets that it took beside the stream: answers to the other side, requests, a farewell.
+    /// Packets sent beside the stream: replies to the other side, requests, a farewell.
     pub replies: u64,
-    /// Packets that each kind of fault acted on, of those its output has; not among `dropped`.
+    /// Packets that each kind of fault on this output acted on; not part of `dropped`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub faults: BTreeMap<&'static str, u64>,
-    /// Damaged answers.
+    /// Damaged packets received.
     pub crc_errors: u64,
-    /// Packets the other side missed by their sequence numbers, where it is known.
+    /// Packets that the other side missed by their sequence numbers, if known.
     pub lost_seq: Option<u64>,
-    /// Why it takes nothing any more.
+    /// Why it stopped taking packets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub broken: Option<String>,
 }
 
 impl LinkReport {
-    /// With every field that a run can have, for limits to be checked against; it has these kinds of faults.
+    /// A report with every possible field and these kinds of faults, to check limits against.
     pub fn shape(to: &str, overload: &str, faults: impl Iterator<Item = &'static str>) -> LinkReport {
         LinkReport {
             to: to.into(),
@@ -284,9 +287,9 @@ impl LinkReport {
 pub struct Gaps {
     /// How often.
     pub count: u64,
-    /// For how long in all, from the first packet that it could not take to the next that it took, s.
+    /// Total time from each first packet that it could not take to the next that it took, s.
     pub total_s: f64,
-    /// Packets dropped meanwhile.
+    /// Packets dropped during the gaps.
     pub dropped: u64,
     /// Samples in them.
     pub samples: u64,

@@ -64,7 +64,7 @@ impl Stepped {
         )
     }
 
-    /// The turns at these nanoseconds into the cell. It applies the same operations to each element of several
+    /// The attitudes at these nanoseconds into the cell. It applies the same operations to each element of several
     /// columns, which the processor does two at a time.
     #[inline(always)]
     fn within<const N: usize>(&self, ns: [f64; N]) -> Many<N> {

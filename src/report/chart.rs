@@ -1,10 +1,9 @@
 //! Charts: data in, an SVG document out.
 //!
-//! Every chart is a pure function of a plain struct of inputs. The same input gives the same
-//! bytes, and no input panics: values that are not finite are left out, a chart without data says
-//! so, and a value that a logarithmic axis cannot show lies on a floor marked "≤". Colours are
-//! those of Okabe and Ito, which colour-blind readers can tell apart, and colour never carries a
-//! meaning alone. Labels never overlap: pictures grow to hold them.
+//! Every chart is a pure function of a plain struct of inputs. The same input gives the same bytes, and no input
+//! panics: non-finite values are left out, a chart without data says so, and a value that a logarithmic axis cannot
+//! show lies on a floor marked "≤". The colours are those of Okabe and Ito, which colour-blind readers can
+//! distinguish, and colour never carries a meaning alone. Labels never overlap: pictures grow to hold them.
 //!
 //! | function | shows |
 //! |---|---|
@@ -13,12 +12,12 @@
 //! | `loglog` | small multiples of cost against error, with the front of the cheapest |
 //! | `grid` | a table of verdicts |
 //! | `curves` | measured curves with their bands, and theory |
-//! | `bars` | what adds up, a bar a step |
-//! | `stacked` | several of these, one under the other |
+//! | `bars` | what adds up, one bar for each step |
+//! | `stacked` | several of these, one below the other |
 //!
-//! The drawing is `plotters`' SVG backend, in quarters of a pixel: it reads no system font, and
-//! leaves every coordinate to us. `kuva` 0.6, tried on the same pictures, has no table of verdicts
-//! and no names at the ends of lines, and let points and tick labels leave their panel.
+//! `plotters`' SVG backend draws in quarters of a pixel: it reads no system font, and leaves every coordinate to
+//! us. `kuva` 0.6, tried on the same pictures, has no table of verdicts and no names at the ends of lines, and lets
+//! points and tick labels leave their panel.
 
 mod axis;
 mod bars;

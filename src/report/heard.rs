@@ -1,10 +1,10 @@
-//! What was heard on a link: the report of `listen`, with the names of a run's where they mean the same.
+//! The report of `listen`, with the field names of a run's report where the meaning is the same.
 
 use super::{Host, Interval, Late, Limit};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The report of somebody's stream, one JSON object.
+/// The report on a received stream, one JSON object.
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct HeardReport {
@@ -12,26 +12,27 @@ pub struct HeardReport {
     pub version: String,
     /// Whether nothing was lost or damaged and every limit held.
     pub ok: bool,
-    /// What did not hold: `links.0.lost_seq = 3 > 0`.
+    /// The limits and conditions that failed: `links.0.lost_seq = 3 > 0`.
     pub failed: Vec<String>,
-    /// From the first bytes to the last, s, or from the first stamp of a `.tlog` to its last; absent for other recordings.
+    /// Time from the first bytes to the last, s, or from the first stamp of a `.tlog` to its last; absent for other
+    /// recordings.
     pub duration_s: Option<f64>,
-    /// What it ran on.
+    /// The machine.
     pub host: Host,
-    /// Each sensor heard, in the order of gyro, accel, mag.
+    /// Each sensor heard, in the order gyro, accel, mag.
     pub sensors: Vec<HeardSensor>,
     /// The link that was listened to.
     pub links: Vec<HeardLink>,
 }
 
 impl HeardReport {
-    /// Of these sensors and this link, not judged yet.
+    /// The report of these sensors and this link, not judged yet.
     pub fn new(host: Host, sensors: Vec<HeardSensor>, link: HeardLink) -> HeardReport {
         let version = env!("CARGO_PKG_VERSION").into();
         HeardReport { version, ok: true, host, sensors, links: vec![link], ..HeardReport::default() }
     }
 
-    /// What was lost or damaged, a stream that has no samples at all, and broken limits.
+    /// Judges losses, damage, a stream without samples, and broken limits.
     ///
     /// # Errors
     /// The report cannot be written as JSON.
@@ -53,28 +54,29 @@ impl HeardReport {
     }
 }
 
-/// One sensor as the receiver sees it.
+/// One sensor, on the receiving side.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct HeardSensor {
     /// `gyro`, `accel`, `mag`; others of the same kind on the link are `gyro-2`, …
     pub name: String,
-    /// Which packets bring it.
+    /// The packets that carry it.
     pub source: String,
     /// Samples received.
     pub received: u64,
-    /// How often the sender samples, by its own sample times: intervals a second, those hidden in gaps counted, Hz. What
-    /// is lost changes nothing; steps of the clock are left out.
+    /// The sender's sample rate by its own sample times, Hz: intervals a second, with those hidden in gaps counted.
+    /// Losses do not change it; steps of the clock are left out.
     pub rate_hz: Option<f64>,
-    /// How many samples arrive a second: (n − 1)/(t_last − t_first), Hz, steps of a recording's stamps left out.
+    /// Samples arriving a second: (n − 1)/(t_last − t_first), Hz, without steps of a recording's stamps.
     pub received_hz: Option<f64>,
-    /// Samples that are missing by their times: intervals, as long as the stream's own are, that passed without one.
+    /// Missing samples by their times: the stream's own intervals that passed without a sample.
     pub missing: Option<u64>,
-    /// How often a sample's time was not after that of the one before.
+    /// How often a sample's time was not after the previous one's.
     pub steps_back: u64,
-    /// How often a sample's time was so far after that of the one before that the clock was set: more than 1 s and 100
-    /// intervals, and neither as long between the arrivals nor, up to a minute, a packet missing by the numbers.
+    /// How often a sample's time was so far after the previous one's that the clock was set: more than 1 s and 100
+    /// intervals, while the arrivals were not that far apart and, up to a minute, no packet was missing by sequence
+    /// number.
     pub steps_forward: u64,
-    /// The longest of those steps, s, negative if back.
+    /// The longest of those steps, s; negative for a step back.
     pub longest_step_s: Option<f64>,
     /// The share of samples that arrived in the same read as the one before.
     pub burst_share: Option<f64>,
@@ -82,13 +84,13 @@ pub struct HeardSensor {
     pub interval_us: Option<Interval>,
     /// Between two sample times, µs.
     pub sample_interval_us: Option<Interval>,
-    /// How far the interval between two arrivals is from that between the two sample times, either way, µs: the
-    /// error of dt for a receiver that takes the time of arrival for the time of the sample.
+    /// The difference between the interval of two arrivals and that of their sample times, absolute value, µs: the
+    /// error of dt for a receiver that uses the arrival time as the sample time.
     pub jitter_us: Option<Late>,
 }
 
 impl HeardSensor {
-    /// With every field that there can be, for limits to be checked against.
+    /// A report with every possible field, to check limits against.
     pub fn shape(name: String) -> HeardSensor {
         HeardSensor {
             name,
@@ -105,35 +107,37 @@ impl HeardSensor {
     }
 }
 
-/// The link as the receiver sees it.
+/// The link, on the receiving side.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct HeardLink {
-    /// `PROTOCOL@LINK` as asked for.
+    /// `PROTOCOL@LINK` as requested.
     pub to: String,
-    /// What was opened.
+    /// The name of the opened link.
     pub name: String,
     /// Whole packets.
     pub packets: u64,
-    /// Bytes, those of no packet included.
+    /// Bytes, including those outside packets.
     pub bytes: u64,
     /// Bytes a second from the first to the last arrival.
     pub bytes_per_s: Option<f64>,
-    /// The same against what the baud rate carries (8N1), where there is one.
+    /// The same relative to the capacity of the baud rate (8N1), if there is one.
     pub utilisation: Option<f64>,
-    /// Packets that fail their checksum or are cut short; a stretch of other bytes counts as one.
+    /// Packets that fail their checksum or are truncated; a stretch of other bytes counts as one.
     pub crc_errors: u64,
-    /// Packets missing by their sequence numbers, modulo 256, damaged ones included; absent in protocols without.
+    /// Packets missing by their sequence numbers, modulo 256, damaged ones included; absent in protocols without
+    /// numbers.
     pub lost_seq: Option<u64>,
-    /// Packets whose number came twice in a row; absent in protocols without.
+    /// Packets whose number came twice in a row; absent in protocols without numbers.
     pub duplicates: Option<u64>,
-    /// Packets that later ones overtook, sixteen at most; they are not lost. Absent in protocols without numbers.
+    /// Packets that later ones overtook, by sixteen at most; they are not lost. Absent in protocols without
+    /// numbers.
     pub out_of_order: Option<u64>,
     /// 1 if the first bytes were the rest of a packet, which is no damage.
     pub joined_midway: u64,
-    /// Packets of MAVLink messages beyond the dialects `common` and `ardupilotmega`, whose checksum and so whose number
-    /// cannot be checked: they show no gap, but fill one.
+    /// Packets of MAVLink messages outside the dialects `common` and `ardupilotmega`, whose checksum, and therefore
+    /// sequence number, cannot be checked: they show no gap, but fill one.
     pub unchecked: u64,
-    /// How often the stamps of a `.tlog` went back, or on by more than an hour; absent elsewhere.
+    /// How often the stamps of a `.tlog` went back, or forward by more than an hour; absent elsewhere.
     pub stamp_steps: Option<u64>,
     /// Packets without a sample, by name.
     pub foreign: BTreeMap<String, u64>,

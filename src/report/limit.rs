@@ -20,7 +20,7 @@ enum Bound {
     AtLeast,
 }
 
-/// Longer spellings first, so that `<=` is not read as `<`.
+/// Longer spellings first, so that `<=` does not parse as `<`.
 const BOUNDS: [(&str, Bound, &str); 4] = [
     ("<=", Bound::AtMost, ">"),
     (">=", Bound::AtLeast, "<"),
@@ -28,7 +28,7 @@ const BOUNDS: [(&str, Bound, &str); 4] = [
     (">", Bound::Above, "<="),
 ];
 
-/// A limit that cannot be understood or asked.
+/// A limit that does not parse, or whose field does not exist.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct LimitError(String);
@@ -62,10 +62,10 @@ impl fmt::Display for Limit {
 }
 
 impl Limit {
-    /// Whether a report of this shape has the field at all: to be asked before a run.
+    /// Checks before a run that a report of this shape has the field.
     ///
     /// # Errors
-    /// No such field, and what there is instead.
+    /// There is no such field; names the existing ones.
     pub fn check(&self, shape: &Value) -> Result<(), LimitError> {
         match self.find(shape)? {
             Value::Number(_) | Value::Null => Ok(()),
@@ -78,7 +78,7 @@ impl Limit {
         self.field.split('.').next() == Some(name)
     }
 
-    /// `None` if the report keeps the limit, else what it says: `sensors.gyro.late_us.p99 = 312 > 200`.
+    /// `None` if the report keeps the limit, else the violation: `sensors.gyro.late_us.p99 = 312 > 200`.
     pub fn broken(&self, report: &Value) -> Option<String> {
         let value = match self.find(report) {
             Ok(value) => value.as_f64(),

@@ -1,18 +1,18 @@
-//! Tables for people, as wide as what they are read on.
+//! Tables for people, fitted to the width of the output.
 
-/// Between two columns.
+/// Space between two columns.
 const GAP: usize = 2;
 
-/// Rows under a heading, columns aligned: those of numbers to the right, the others to the left.
+/// Rows under a heading with aligned columns: numbers to the right, other text to the left.
 pub fn table(heading: &[&str], rows: &[Vec<String>]) -> String {
     table_within(heading, rows, usize::MAX)
 }
 
-/// The same in at most `width` characters a line, as far as that can be done without breaking a number.
+/// The same with at most `width` characters a line, as far as possible without breaking a number.
 ///
-/// What does not fit is first wrapped at spaces: headings, and the words of columns of text. What does not fit then is
-/// several tables one under another, each with the columns that say whose row it is. A number, and a number with its
-/// unit, stays whole, and so does a word: one that is longer than the line goes beyond it.
+/// What does not fit first wraps at spaces: headings, and the words of text columns. If it still does not fit, it
+/// becomes several tables one below the other, each with the columns that identify the row. A number, a number with
+/// its unit, and a word stay whole: a word longer than the line extends beyond it.
 pub fn table_within(heading: &[&str], rows: &[Vec<String>], width: usize) -> String {
     let columns: Vec<_> = (0..heading.len()).map(|i| Column::new(heading[i], rows, i)).collect();
     let names = naming(&columns);
@@ -31,9 +31,9 @@ struct Column<'a> {
     heading: &'a str,
     cells: Vec<&'a str>,
     is_number: bool,
-    /// Characters of its longest cell or heading.
+    /// Width of its longest cell or heading, in characters.
     natural: usize,
-    /// Characters of what may not be broken.
+    /// Width of its longest unbreakable piece, in characters.
     least: usize,
 }
 
@@ -52,7 +52,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// By width, from the least to the natural one: how many lines the heading and each cell take.
+    /// For each width from the least to the natural one: the number of lines of the heading and of each cell.
     fn heights(&self) -> Vec<Vec<usize>> {
         let of =
             |width| [self.heading].iter().chain(&self.cells).map(|cell| wrap(cell, width).len()).collect();
@@ -68,7 +68,7 @@ fn is_number(cell: &str) -> bool {
     cell == "-" || cell.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// A cell at the spaces at which it may be broken: not between a number and its unit.
+/// A cell split at the spaces where it may wrap: not between a number and its unit.
 fn pieces(cell: &str) -> Vec<&str> {
     let mut pieces = Vec::new();
     let (mut begin, mut before) = (0, 0);
@@ -83,13 +83,13 @@ fn pieces(cell: &str) -> Vec<&str> {
     pieces
 }
 
-/// How many of the first columns say whose row it is: the first, and those beside it while it is blank in some row.
+/// How many of the first columns identify the row: those that are blank in some row, and the first that is not.
 fn naming(columns: &[Column<'_>]) -> usize {
     let blank = columns.iter().take_while(|column| column.cells.iter().any(|cell| cell.is_empty())).count();
     (blank + 1).min(columns.len())
 }
 
-/// The columns that stand side by side: all of them where that fits.
+/// The columns side by side in each table: all of them if that fits.
 fn groups<'c, 'a>(columns: &'c [Column<'a>], names: usize, width: usize) -> Vec<Vec<&'c Column<'a>>> {
     let least = |group: &[&Column<'_>]| {
         group.iter().map(|column| column.least + GAP).sum::<usize>().saturating_sub(GAP)
@@ -108,7 +108,7 @@ fn groups<'c, 'a>(columns: &'c [Column<'a>], names: usize, width: usize) -> Vec<
     groups
 }
 
-/// Columns side by side.
+/// The columns side by side, as text.
 fn laid_out(columns: &[&Column<'_>], width: usize) -> String {
     let widths = widths(columns, width);
     let line = |cells: Vec<&str>, is_heading: bool| {
@@ -117,7 +117,7 @@ fn laid_out(columns: &[&Column<'_>], width: usize) -> String {
         let mut text = String::new();
         for at in 0..height {
             let cell = |((lines, width), column): ((&Vec<String>, &usize), &&Column<'_>)| {
-                // A heading of several lines stands on its columns.
+                // A heading of several lines aligns at the bottom.
                 let above = if is_heading { height - lines.len() } else { 0 };
                 let cell = at.checked_sub(above).and_then(|at| lines.get(at)).map_or("", String::as_str);
                 if column.is_number { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
@@ -134,8 +134,8 @@ fn laid_out(columns: &[&Column<'_>], width: usize) -> String {
     text
 }
 
-/// What each column gets: all that it wants where that fits, else at least what it needs, and of the rest what
-/// spares most lines.
+/// The width of each column: its natural one if everything fits, else at least its least one, and the rest where it
+/// saves most lines.
 fn widths(columns: &[&Column<'_>], width: usize) -> Vec<usize> {
     let room = width.saturating_sub(GAP * columns.len().saturating_sub(1));
     let natural: Vec<_> = columns.iter().map(|column| column.natural).collect();
@@ -143,7 +143,7 @@ fn widths(columns: &[&Column<'_>], width: usize) -> Vec<usize> {
         return natural;
     }
     let heights: Vec<Vec<Vec<usize>>> = columns.iter().map(|column| column.heights()).collect();
-    // Lines of the table first, then those of its cells, so that two columns may be widened one after the other.
+    // Count lines of the table first, then lines of its cells, so that two columns can grow one after the other.
     let cost = |widths: &[usize]| {
         let rows = columns.first().map_or(0, |column| column.cells.len() + 1);
         let of = |row: usize| {
@@ -174,7 +174,7 @@ fn widths(columns: &[&Column<'_>], width: usize) -> Vec<usize> {
     }
 }
 
-/// Broken at spaces into lines of at most `width` characters, as far as its pieces allow.
+/// Wraps at spaces into lines of at most `width` characters, as far as its pieces allow.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in pieces(text) {

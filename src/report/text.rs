@@ -1,6 +1,6 @@
 //! Numbers and counts for people.
 
-/// A number with four significant digits (whole numbers below 10⁹ with all of theirs) and no useless zeros.
+/// A number with four significant digits (integers below 10⁹ with all of theirs) and no trailing zeros.
 pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value + 0.0);
@@ -13,7 +13,7 @@ pub fn number(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-/// So many of something, in the plural unless it is one: `1 run`, `2 runs`.
+/// A count with its noun, plural unless it is one: `1 run`, `2 runs`.
 pub fn count(n: u64, what: &str) -> String {
     match n {
         1 => format!("1 {what}"),

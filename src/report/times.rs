@@ -1,9 +1,9 @@
-//! Durations counted in fixed memory, and the percentiles of a report.
+//! Durations counted in fixed memory, and their percentiles for a report.
 
 use super::{Interval, Late, Spread};
 use hdrhistogram::Histogram;
 
-/// The longest time told apart, ns; longer ones count as this.
+/// The longest duration to distinguish, ns; longer ones count as this.
 const LONGEST: u64 = 60_000_000_000;
 
 /// A histogram of durations from 1 ns to a minute whose percentiles are within 0.1 %; counting allocates nothing.
@@ -17,24 +17,24 @@ impl Default for Times {
 }
 
 impl Times {
-    /// Empty.
+    /// An empty histogram.
     pub fn new() -> Times {
         // The bounds are constants that the library accepts; three digits are 0.1 %.
         Times(Histogram::new_with_bounds(1, LONGEST, 3).unwrap_or_else(|_| unreachable!("constant bounds")))
     }
 
-    /// Counts a duration, ns; less than none is none.
+    /// Counts a duration, ns; a negative one counts as 0.
     pub fn record(&mut self, ns: i64) {
         self.0.saturating_record(ns.max(0) as u64);
     }
 
-    /// Adds what another has counted.
+    /// Adds the counts of another.
     pub fn add(&mut self, other: &Times) {
         // Equal bounds: adding cannot fail.
         let _ = self.0.add(&other.0);
     }
 
-    /// How many.
+    /// The number of durations.
     pub fn count(&self) -> u64 {
         self.0.len()
     }
@@ -44,7 +44,7 @@ impl Times {
         self.0.count_between(ns.max(0) as u64 + 1, LONGEST)
     }
 
-    /// As lateness, µs; `None` where nothing was counted.
+    /// As lateness, µs; `None` if nothing was counted.
     pub fn late(&self) -> Option<Late> {
         let at = |share| us(self.0.value_at_quantile(share));
         let late = Late {
@@ -69,7 +69,7 @@ impl Times {
         Some(Spread { p50, p99, max })
     }
 
-    /// Every value that occurred, µs, with its count, for a picture.
+    /// Every distinct value, µs, with its count, for a chart.
     pub fn values(&self) -> Vec<(f64, u64)> {
         self.0.iter_recorded().map(|step| (us(step.value_iterated_to()), step.count_at_value())).collect()
     }
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn percentiles_are_those_of_the_sorted_values_to_a_thousandth() {
-        // Squares: a distribution with a tail, in an order of its own.
+        // Squares give a distribution with a tail; the order is scrambled.
         let mut values: Vec<i64> = (0..10_000).map(|i| (i * 7919 % 10_000i64).pow(2)).collect();
         let mut times = Times::new();
         values.iter().for_each(|&ns| times.record(ns));

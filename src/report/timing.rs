@@ -1,4 +1,4 @@
-//! What `timing` reports beyond a run.
+//! The additional report of `timing`.
 
 use super::{Late, Limit, Report, Spread, Times};
 use crate::time::Rate;
@@ -8,22 +8,22 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct TimingReport {
-    /// As of any run.
+    /// The report of the run.
     #[serde(flatten)]
     pub run: Report,
-    /// Who received: a reader on the pty, or the port itself through a loopback plug; absent where only the sending
+    /// The receiver: a reader on the pty, or the port itself through a loopback plug; absent if only the sending
     /// side was measured.
     pub received_by: Option<&'static str>,
     /// The bare timer.
     pub baseline: Baseline,
-    /// p99 lateness of the gyro (without one, of the first sensor) over that of the bare timer.
+    /// p99 lateness of the gyro (without one, of the first sensor) divided by that of the bare timer.
     pub ratio_p99: Option<f64>,
-    /// Samples and wakes that no line of `timing.csv` tells of, because the disk was too slow.
+    /// Samples and wake-ups missing from `timing.csv` because the disk was too slow.
     pub unrecorded: u64,
 }
 
 impl TimingReport {
-    /// With every field that there can be, for limits to be checked against: those of a run of this shape, and more.
+    /// A report with every possible field, to check limits against: those of a run of this shape, and more.
     pub fn shape(mut run: Report) -> TimingReport {
         run.sensors.iter_mut().for_each(|sensor| sensor.timing = Some(SensorTiming::shape()));
         run.attitude = None;
@@ -36,14 +36,14 @@ impl TimingReport {
         }
     }
 
-    /// What a run that has been judged has missed at the other end, and broken limits.
+    /// Adds to a judged run what the other end missed, and broken limits.
     ///
     /// # Errors
     /// The report cannot be written as JSON.
     pub fn judge(&mut self, limits: &[Limit]) -> serde_json::Result<()> {
         let missed = self.run.sensors.iter().filter_map(|sensor| {
             let missed = sensor.timing?.missed?;
-            // What was dropped is told already.
+            // Dropped samples are reported already.
             (missed > sensor.dropped).then(|| format!("sensors.{}.missed = {missed} > 0", sensor.name))
         });
         let missed: Vec<_> = missed.collect();
@@ -55,22 +55,22 @@ impl TimingReport {
     }
 }
 
-/// A loop that does nothing but sleep until the next tick of the gyro's rate, on the pacing thread, between the
-/// slices of the stream.
+/// A loop that only sleeps until the next tick of the gyro's rate, on the pacing thread, between the slices of the
+/// stream.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Baseline {
     /// Its rate, Hz.
     pub rate_hz: f64,
     /// Wake-ups.
     pub wakes: u64,
-    /// Those later than a whole period.
+    /// Wake-ups late by more than a whole period.
     pub overdue: u64,
-    /// The moment after the wake-up minus due, µs.
+    /// Time after the wake-up minus the due time, µs.
     pub late_us: Option<Late>,
 }
 
 impl Baseline {
-    /// Of wake-ups this late at this rate.
+    /// The baseline for this lateness at this rate.
     pub fn new(late: &Times, rate: Rate) -> Baseline {
         Baseline {
             rate_hz: rate.as_hz(),
@@ -81,25 +81,25 @@ impl Baseline {
     }
 }
 
-/// What `timing` adds to a sensor.
+/// The additional figures of `timing` for a sensor.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct SensorTiming {
-    /// `sent_hz` against `rate_hz`, parts per million of the monotonic clock.
+    /// `sent_hz` relative to `rate_hz`, parts per million of the monotonic clock.
     pub sent_ppm: Option<f64>,
-    /// `received_hz` against `rate_hz`.
+    /// `received_hz` relative to `rate_hz`.
     pub received_ppm: Option<f64>,
-    /// Samples sent later than a whole period of their sensor.
+    /// Samples sent late by more than a whole period of their sensor.
     pub overdue: u64,
-    /// Samples that arrived; absent where nothing is received.
+    /// Samples that arrived; absent if nothing is received.
     pub received: Option<u64>,
     /// Samples made for the link that did not arrive.
     pub missed: Option<u64>,
-    /// From just before the write call to just after the receiver's read, µs.
+    /// Time from just before the write call to just after the receiver's read, µs.
     pub transit_us: Option<Spread>,
 }
 
 impl SensorTiming {
-    /// With every field that there can be.
+    /// An entry with every possible field.
     fn shape() -> SensorTiming {
         SensorTiming {
             sent_ppm: Some(0.0),

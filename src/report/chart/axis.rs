@@ -13,7 +13,7 @@ pub(super) struct Axis {
     pub power: Option<String>,
 }
 
-/// A place on an axis, with a label where there is room for one.
+/// A position on an axis, with a label if there is room for one.
 #[derive(Clone, Debug)]
 pub(super) struct Tick {
     /// From 0 (start of the axis) to 1.
@@ -21,15 +21,15 @@ pub(super) struct Tick {
     pub label: String,
 }
 
-/// How an axis is made of its data.
+/// How to derive an axis from its data.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Options {
     pub log: bool,
-    /// Labels there is room for.
+    /// The number of labels that fit.
     pub room: usize,
-    /// Part of the range left free at both ends.
+    /// The fraction of the range left free at both ends.
     pub pad: f64,
-    /// The period of an angle: its ticks are even parts of it.
+    /// The period of an angle: its ticks divide it evenly.
     pub wrap: Option<f64>,
     /// Values at or below this lie on the floor of a logarithmic axis.
     pub floor: Option<f64>,
@@ -95,7 +95,7 @@ impl Axis {
         axis
     }
 
-    /// Ticks at powers of ten, and at 2 and 5 where there are few of them.
+    /// Ticks at powers of ten, and at 2 and 5 if there are few.
     fn decades(&self, room: usize, floor: bool) -> Vec<Tick> {
         let (first, last) = (self.lo.ceil() as i32, self.hi.floor() as i32);
         let count = (last - first + 1).max(0) as usize;
@@ -132,19 +132,19 @@ impl Axis {
         ticks
     }
 
-    /// Where a value lies, from 0 to 1; what is below the floor lies on it.
+    /// The position of a value, from 0 to 1; values below the floor lie on it.
     pub fn place(&self, v: f64) -> f64 {
         let v = match self.log {
             true if v >= f64::MIN_POSITIVE => v.log10(),
             true => self.lo,
             false => v,
         };
-        // Halves, so that a range as wide as all numbers does not overflow.
+        // Halves, so that the full range of numbers does not overflow.
         let span = self.hi / 2.0 - self.lo / 2.0;
         ((v / 2.0 - self.lo / 2.0) / span).clamp(0.0, 1.0)
     }
 
-    /// `count + 1` edges that divide the axis evenly as it is drawn.
+    /// `count + 1` edges that divide the axis evenly as drawn.
     pub fn edges(&self, count: usize) -> Vec<f64> {
         (0..=count)
             .map(|i| {
@@ -174,14 +174,14 @@ fn step(span: f64, room: usize, wrap: Option<f64>) -> f64 {
         .unwrap_or(decade * 10.0)
 }
 
-/// Labels of linear ticks, with the power of ten that they leave out.
+/// Labels of linear ticks, and the power of ten that they leave out.
 fn labels(values: &[f64], step: f64) -> (Vec<String>, Option<String>) {
     let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let power = match largest {
         v if v >= 1e5 || (v > 0.0 && v < 1e-2) => 3 * (v.log10() / 3.0).floor() as i32,
         _ => 0,
     };
-    // In two factors: one alone could overflow.
+    // Two factors, because one alone could overflow.
     let scale = |v: f64| v / 10f64.powi(power / 2) / 10f64.powi(power - power / 2);
     let decimals = (-(scale(step) * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize;
     // A step of 45 or 22.5 needs its own decimals.
@@ -214,7 +214,7 @@ fn power_label(mantissa: f64, exponent: i32, plain: bool) -> String {
     }
 }
 
-/// A whole number in raised digits.
+/// An integer in superscript digits.
 pub(super) fn superscript(n: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     n.to_string().chars().map(|c| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize])).collect()

@@ -1,4 +1,4 @@
-//! Bars one below the other, each with its figure.
+//! Horizontal bars, one below the other, each with its figure.
 
 use super::canvas::{Anchor, FAINT, Font, INK, Pen, RULE, WHITE, color, sheet};
 use super::plot::{Head, MARGIN, SMALL, longest};
@@ -7,29 +7,29 @@ use crate::report::number;
 const WIDTH: f64 = 420.0;
 const BAR: f64 = 26.0;
 
-/// A picture of bars from zero.
+/// A chart of bars from zero.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bars {
-    /// What the picture shows.
+    /// The title of the chart.
     pub title: String,
     /// A second line; may be empty.
     pub subtitle: String,
     /// The unit of the figures.
     pub unit: String,
-    /// The bars from above to below.
+    /// The bars, from top to bottom.
     pub bars: Vec<Bar>,
-    /// A vertical line across all of them with its name: the reference for them.
+    /// A vertical line across all bars with its name: their reference.
     pub line: Option<(String, f64)>,
 }
 
 /// One bar.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bar {
-    /// What it is.
+    /// Its name.
     pub name: String,
-    /// How long it is; nothing is drawn of one that is negative or not finite.
+    /// Its length; a negative or non-finite one is not drawn.
     pub value: f64,
-    /// How much of its end is new against the bar above; drawn darker.
+    /// The part at its end that is new relative to the bar above; drawn darker.
     pub added: f64,
 }
 
@@ -82,7 +82,7 @@ pub fn bars(input: &Bars) -> String {
         }
         for (i, (bar, figure)) in input.bars.iter().zip(&figures).enumerate() {
             let (from, middle) = (at(bar.value) + 8.0, top + (i as f64 + 0.5) * BAR);
-            // Where the line would run through it, the figure goes before.
+            // The figure gets a background where the line would cross it.
             canvas.rect((from - 3.0, middle - 8.0), (small.width(figure) + 6.0, 16.0), WHITE, 1.0);
             canvas.text(figure, (from, middle), &small);
         }

@@ -1,4 +1,4 @@
-//! A sheet to draw on, in pixels, and the measures of text.
+//! A drawing sheet in pixels, and text measures.
 
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -6,7 +6,7 @@ use plotters::style::{FontTransform, IntoFont, RGBAColor, RGBColor, ShapeStyle, 
 
 /// The backend draws on whole units: this many make a pixel.
 const UNITS: f64 = 4.0;
-/// `plotters` writes a font this much smaller than it is asked to.
+/// `plotters` writes a font smaller than requested by this factor.
 const FONT_SCALE: f64 = 1.24;
 
 pub(super) type Color = RGBColor;
@@ -17,7 +17,7 @@ pub(super) const WHITE: Color = RGBColor(0xff, 0xff, 0xff);
 pub(super) const GREEN: Color = RGBColor(0x00, 0x9e, 0x73);
 pub(super) const ORANGE: Color = RGBColor(0xe6, 0x9f, 0x00);
 pub(super) const VERMILION: Color = RGBColor(0xd5, 0x5e, 0x00);
-/// The colours of Okabe and Ito that stand out on white.
+/// The colours of Okabe and Ito that are visible on white.
 pub(super) const PALETTE: [Color; 7] = [
     RGBColor(0x00, 0x72, 0xb2),
     VERMILION,
@@ -28,7 +28,7 @@ pub(super) const PALETTE: [Color; 7] = [
     RGBColor(0x00, 0x00, 0x00),
 ];
 
-/// The n-th colour, round and round.
+/// The n-th colour, cyclic.
 pub(super) fn color(n: usize) -> Color {
     PALETTE[n % PALETTE.len()]
 }
@@ -39,7 +39,7 @@ pub(super) fn dark(c: Color) -> Color {
     RGBColor(part(c.0), part(c.1), part(c.2))
 }
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Clone, Copy)]
 pub(super) struct Pen {
     pub color: Color,
@@ -72,7 +72,7 @@ impl Pen {
     }
 }
 
-/// Which side of a text its point is on.
+/// The side of a text where its point is.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Anchor {
     Start,
@@ -80,14 +80,14 @@ pub(super) enum Anchor {
     End,
 }
 
-/// How a text is written; its point is half-way up the letters.
+/// The style of a text; its point is half-way up the letters.
 #[derive(Clone, Copy)]
 pub(super) struct Font {
     pub size: f64,
     pub bold: bool,
     pub color: Color,
     pub anchor: Anchor,
-    /// Turned a quarter anticlockwise, to be read from below.
+    /// Turned a quarter anticlockwise, so that it reads upwards.
     pub upright: bool,
 }
 
@@ -108,13 +108,13 @@ impl Font {
         Self { upright: true, ..self }
     }
 
-    /// The length of a text in pixels, on the generous side of common sans-serif fonts.
+    /// The width of a text in pixels, an upper estimate for common sans-serif fonts.
     pub fn width(&self, text: &str) -> f64 {
         let em: f64 = text.chars().map(advance).sum();
         em * self.size * if self.bold { 1.12 } else { 1.0 }
     }
 
-    /// Breaks a text into lines no longer than `width` where there are spaces to break at.
+    /// Wraps a text at spaces into lines of at most `width`.
     pub fn wrap(&self, text: &str, width: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
@@ -130,7 +130,7 @@ impl Font {
     }
 }
 
-/// The advance of a letter in parts of the font's size.
+/// The advance of a letter as a fraction of the font size.
 fn advance(c: char) -> f64 {
     match c {
         'i' | 'l' | 'j' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.33,
@@ -143,7 +143,7 @@ fn advance(c: char) -> f64 {
     }
 }
 
-/// The outline of a mark.
+/// The shape of a mark.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Mark {
     Circle,
@@ -156,7 +156,7 @@ pub(super) enum Mark {
 
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Down, Mark::Cross];
 
-/// The n-th mark, round and round; together with [`color`] 42 different pairs.
+/// The n-th mark, cyclic; with [`color`] it gives 42 different pairs.
 pub(super) fn mark(n: usize) -> Mark {
     MARKS[n % MARKS.len()]
 }
@@ -166,7 +166,7 @@ pub(super) struct Canvas<'a> {
     backend: SVGBackend<'a>,
 }
 
-/// Draws on a sheet and returns it as an SVG document. `name` is what a screen reader says.
+/// Draws on a sheet and returns it as an SVG document. Screen readers say `name`.
 pub(super) fn sheet(width: f64, height: f64, name: &str, draw: impl FnOnce(&mut Canvas<'_>)) -> String {
     let size = (units(width) as u32, units(height) as u32);
     let mut body = String::new();

@@ -1,4 +1,4 @@
-//! Curves with their bands, and the theory beside them.
+//! Curves with their bands, and theory for comparison.
 
 use super::axis::{Axis, Options};
 use super::canvas::{Canvas, Color, FAINT, INK, Mark, Pen, color, mark, sheet};
@@ -7,23 +7,23 @@ use super::series::{drawable, thin};
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 420.0;
-/// A measured curve of at most this many points has a mark at each of them.
+/// A measured curve with at most this many points has a mark at each.
 const MARKED: usize = 60;
 
-/// A picture of curves on two axes.
+/// A chart of curves on two axes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Curves {
-    /// What the picture shows.
+    /// The title of the chart.
     pub title: String,
     /// A second line; may be empty.
     pub subtitle: String,
-    /// What the horizontal axis is, with its unit: `averaging time τ (s)`.
+    /// The quantity on the horizontal axis, with its unit: `averaging time τ (s)`.
     pub x_label: String,
-    /// What the vertical axis is, with its unit: `Allan deviation (rad/s)`.
+    /// The quantity on the vertical axis, with its unit: `Allan deviation (rad/s)`.
     pub y_label: String,
-    /// Whether the axes are evenly divided rather than logarithmic.
+    /// Whether the axes are linear, not logarithmic.
     pub linear: bool,
-    /// What the bands are: `95 % confidence`.
+    /// The meaning of the bands: `95 % confidence`.
     pub band: String,
     /// The curves, drawn in this order.
     pub curves: Vec<Curve>,
@@ -32,18 +32,18 @@ pub struct Curves {
 /// One curve.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Curve {
-    /// What the curve is.
+    /// Its name.
     pub name: String,
-    /// How it is drawn.
+    /// Its kind, which sets its style.
     pub kind: CurveKind,
-    /// Its points, joined in this order; one that is not finite, or not positive where the axis
-    /// is logarithmic, is left out.
+    /// Its points, joined in this order. It leaves out points that are not finite, or not positive on a logarithmic
+    /// axis.
     pub points: Vec<(f64, f64)>,
     /// A band around it: `(x, lowest, highest)`; may be empty.
     pub band: Vec<(f64, f64, f64)>,
 }
 
-/// What a curve means.
+/// The meaning of a curve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum CurveKind {
     /// Measured: coloured, with marks.
@@ -53,7 +53,7 @@ pub enum CurveKind {
     Theory,
 }
 
-/// Draws curves, on logarithmic axes unless told otherwise.
+/// Draws curves, on logarithmic axes by default.
 #[must_use]
 pub fn curves(input: &Curves) -> String {
     let looks = looks(input);
@@ -90,7 +90,7 @@ pub fn curves(input: &Curves) -> String {
     })
 }
 
-/// How a curve looks.
+/// The style of a curve.
 struct Look {
     color: Color,
     mark: Option<Mark>,
@@ -138,7 +138,7 @@ fn band<'a>(input: &'a Curves, curve: &'a Curve) -> impl Iterator<Item = (f64, f
     curve.band.iter().copied().filter(keep)
 }
 
-/// What no label at a line's end says: the bands, and curves without a point.
+/// Legend entries for everything without a label at a line's end: the bands, and curves without points.
 fn entries(input: &Curves, looks: &[Look]) -> Vec<(Sign, String)> {
     let mut entries = Vec::new();
     for (curve, look) in input.curves.iter().zip(looks) {

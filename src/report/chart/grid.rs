@@ -5,30 +5,30 @@ use super::plot::{Head, LEADING, MARGIN, SMALL, longest};
 use plotters::style::RGBColor;
 
 const CELL: f64 = 26.0;
-/// Column headings are broken into lines of about this length.
+/// Column headings wrap at about this width.
 const HEADING: f64 = 130.0;
-/// The room of the sign in a cell.
+/// The width of the sign in a cell.
 const SIGN: f64 = 20.0;
 
 /// Rows by columns, with a verdict in each cell.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Grid {
-    /// What the table shows.
+    /// The title of the table.
     pub title: String,
     /// A second line; may be empty.
     pub subtitle: String,
     /// The headings of the columns.
     pub columns: Vec<String>,
-    /// From top to bottom.
+    /// The rows, from top to bottom.
     pub rows: Vec<Row>,
 }
 
 /// One row of the table.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Row {
-    /// What the row is about.
+    /// The name of the row.
     pub name: String,
-    /// One cell a column; a missing one counts as not run.
+    /// One cell for each column; a missing one counts as not run.
     pub cells: Vec<Cell>,
 }
 
@@ -37,11 +37,11 @@ pub struct Row {
 pub struct Cell {
     /// The verdict, shown as a colour and a sign.
     pub verdict: Verdict,
-    /// What is written in the cell, with its unit; may be empty.
+    /// The text in the cell, with its unit; may be empty.
     pub figure: String,
 }
 
-/// What a cell says.
+/// The verdict of a cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Verdict {
     /// Works as it should: a disc on green.
@@ -50,7 +50,7 @@ pub enum Verdict {
     Degraded,
     /// Does not work: a cross on red.
     Fails,
-    /// Was not tried: a dash on white.
+    /// Was not run: a dash on white.
     #[default]
     NotRun,
 }
@@ -109,7 +109,7 @@ pub fn grid(input: &Grid) -> String {
     })
 }
 
-/// The measures of a table.
+/// The layout of a table.
 struct Plan {
     columns: Vec<Vec<String>>,
     heading_height: f64,

@@ -8,31 +8,31 @@ use super::series::drawable;
 const WIDTH: f64 = 800.0;
 const HEIGHT: f64 = 330.0;
 const BINS: usize = 80;
-/// From one row of marker labels to the next.
+/// Distance between rows of marker labels.
 const ROW: f64 = 15.0;
 
-/// A picture of one or several distributions.
+/// A chart of one or several distributions.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Histogram {
-    /// What the picture shows.
+    /// The title of the chart.
     pub title: String,
     /// A second line; may be empty.
     pub subtitle: String,
-    /// What the values are, with their unit: `lateness (µs)`.
+    /// The quantity, with its unit: `lateness (µs)`.
     pub x_label: String,
-    /// How a distribution is shown.
+    /// The way to show a distribution.
     pub shape: Shape,
-    /// Whether the values' axis is logarithmic.
+    /// Whether the axis of the values is logarithmic.
     pub log_x: bool,
-    /// Whether the shares' axis is logarithmic.
+    /// Whether the axis of the shares is logarithmic.
     pub log_y: bool,
-    /// The distributions, each in a colour of its own.
+    /// The distributions, each in its own colour.
     pub distributions: Vec<Distribution>,
     /// Vertical lines with labels above the plot.
     pub markers: Vec<Marker>,
 }
 
-/// How a distribution is shown; shares are of its own samples, in percent.
+/// The way to show a distribution. Shares are relative to its own samples, in percent.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Shape {
     /// The share of samples in each of 80 bins.
@@ -44,7 +44,7 @@ pub enum Shape {
     Above,
 }
 
-/// Values, each with how often it occurred.
+/// Values, each with its count.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Distribution {
     /// What was measured.
@@ -54,13 +54,13 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// Samples as they are, each counted once.
+    /// A distribution of samples, each counted once.
     #[must_use]
     pub fn of_samples(name: &str, samples: impl IntoIterator<Item = f64>) -> Self {
         Self { name: name.to_owned(), values: samples.into_iter().map(|v| (v, 1)).collect() }
     }
 
-    /// What can be drawn, in order.
+    /// The drawable values, in order.
     fn sorted(&self) -> Vec<(f64, f64)> {
         let drawn = |p: &&(f64, u64)| drawable(p.0) && p.1 > 0;
         let shares = self.values.iter().filter(drawn);
@@ -73,11 +73,11 @@ impl Distribution {
 /// A vertical line.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Marker {
-    /// Where it stands, in the unit of the values.
+    /// Its position, in the unit of the values.
     pub x: f64,
-    /// What it marks: `gyro p99 61 µs`.
+    /// Its label: `gyro p99 61 µs`.
     pub label: String,
-    /// The distribution it belongs to, whose colour it takes; dark without.
+    /// The distribution whose colour it takes; dark if `None`.
     pub of: Option<usize>,
 }
 
@@ -131,7 +131,7 @@ fn x_axis(input: &Histogram, sorted: &[Vec<(f64, f64)>]) -> Axis {
 fn y_axis(input: &Histogram, traces: &[Vec<(f64, f64)>]) -> Axis {
     let shares = traces.iter().flatten().map(|p| p.1);
     let positive = shares.filter(|s| *s > 0.0 || !input.log_y);
-    // Bins stand on zero; shares run to the whole.
+    // Bins start at zero; shares end at 100 %.
     let ends = match (input.log_y, input.shape) {
         (false, Shape::Bins) => {
             let shares = traces.iter().flatten().map(|p| p.1);
@@ -188,7 +188,7 @@ fn bins(sorted: &[(f64, f64)], total: f64, x: &Axis) -> Vec<(f64, f64)> {
     outline
 }
 
-/// Steps at the values, no more than one a pixel column.
+/// Steps at the values, at most one in each pixel column.
 fn cumulated(shape: Shape, sorted: &[(f64, f64)], total: f64, x: &Axis) -> Vec<(f64, f64)> {
     let share = |below: f64| match shape {
         Shape::Above => 100.0 * (total - below) / total,
@@ -215,7 +215,7 @@ fn entries(input: &Histogram) -> Vec<(Sign, String)> {
     input.distributions.iter().enumerate().map(entry).collect()
 }
 
-/// Colours, and dashes for every second line, so that lines over each other both show.
+/// Colours, and dashes for every second line, so that lines on top of each other are both visible.
 fn pen(i: usize) -> Pen {
     let pen = Pen::new(color(i), 1.75);
     if i % 2 == 1 { pen.dashed(7.0, 3.0) } else { pen }
@@ -228,14 +228,14 @@ fn draw_trace(canvas: &mut Canvas<'_>, frame: &Frame, shape: Shape, trace: &[(f6
     };
     match shape {
         Shape::Bins => canvas.polygon(&points, color(i), 0.12),
-        // A distribution function goes on to both sides.
+        // A distribution function continues to both sides.
         Shape::Below => points.push((frame.right(), last.1)),
         Shape::Above => points.insert(0, (frame.left, first.1)),
     }
     canvas.path(&points, &pen(i));
 }
 
-/// A marker's label with its place above the plot.
+/// A marker's label with its position above the plot.
 struct Label<'a> {
     text: &'a str,
     color: Color,
@@ -245,14 +245,14 @@ struct Label<'a> {
     row: usize,
 }
 
-/// Puts each label in the lowest row where it meets no other.
+/// Puts each label in the lowest row where it overlaps no other.
 fn place_labels<'a>(input: &'a Histogram, x: &Axis, left: f64) -> Vec<Label<'a>> {
     let font = Font::new(SMALL, INK);
     let mut markers: Vec<&Marker> = input.markers.iter().filter(|m| drawable(m.x)).collect();
     markers.sort_by(|a, b| a.x.total_cmp(&b.x));
     let mut ends: Vec<f64> = Vec::new();
     let mut labels = Vec::new();
-    // From the right: a label stands right of its line, clear of the lines that go up past it.
+    // From right to left: a label is to the right of its line, clear of the lines that pass it upwards.
     for marker in markers.into_iter().rev() {
         let at = left + x.place(marker.x) * WIDTH;
         let (start, end) = (at - 2.0, at + 4.0 + font.width(&marker.label));
@@ -261,7 +261,7 @@ fn place_labels<'a>(input: &'a Histogram, x: &Axis, left: f64) -> Vec<Label<'a>>
             ends.push(f64::INFINITY);
             ends.len() - 1
         });
-        // The line crosses the rows below: none of them may be used further left than this.
+        // The line crosses the rows below: labels there must stay to the right of it.
         for taken in &mut ends[..=row] {
             *taken = taken.min(start);
         }

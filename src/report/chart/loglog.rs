@@ -7,23 +7,22 @@ use super::series::drawable;
 
 const WIDTH: f64 = 460.0;
 const HEIGHT: f64 = 250.0;
-/// Above each plot, for its title; and below it, for its axis.
+/// Space above each plot for its title, and below it for its axis.
 const ABOVE: f64 = 40.0;
 const BELOW: f64 = 44.0;
 
-/// One plot a motion, with the same axes.
+/// One plot for each motion, with the same axes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LogLog {
-    /// What the picture shows.
+    /// The title of the chart.
     pub title: String,
     /// A second line; may be empty.
     pub subtitle: String,
-    /// What the horizontal axis is, with its unit: `cost (ns per simulated second)`.
+    /// The quantity on the horizontal axis, with its unit: `cost (ns per simulated second)`.
     pub x_label: String,
-    /// What the vertical axis is, with its unit: `error (deg)`.
+    /// The quantity on the vertical axis, with its unit: `error (deg)`.
     pub y_label: String,
-    /// Errors at or below this lie on the floor of the plots; without it, only those that are not
-    /// positive do.
+    /// Errors at or below this lie on the floor of the plots; without it, only non-positive errors do.
     pub y_floor: Option<f64>,
     /// The plots.
     pub motions: Vec<Motion>,
@@ -32,31 +31,31 @@ pub struct LogLog {
 /// One plot.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Motion {
-    /// What the plot shows.
+    /// The title of the plot.
     pub title: String,
-    /// The methods that were tried on it.
+    /// The methods in it.
     pub methods: Vec<Method>,
 }
 
 /// One method on one motion.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Method {
-    /// The name: the same method has the same colour and mark in every plot.
+    /// Its name: the same method has the same colour and mark in every plot.
     pub name: String,
-    /// Cost and error, one point a rate, in the order in which they are joined. A point that is
-    /// not finite, or has no positive cost, is left out.
+    /// Cost and error, one point for each rate, in the order to join them. A point that is not finite, or has no
+    /// positive cost, is left out.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Method {
-    /// What can be drawn; errors below the floor are as good as on it.
+    /// The drawable points; errors below the floor count as on it.
     fn drawn(&self, floor: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
         let drawn = |p: &&(f64, f64)| drawable(p.0) && drawable(p.1) && p.0 > 0.0;
         self.points.iter().filter(drawn).map(move |p| (p.0, p.1.max(floor)))
     }
 }
 
-/// Draws cost against error, with the front of the points that nothing cheaper beats.
+/// Draws cost against error, with the front of the points that no cheaper one beats.
 #[must_use]
 pub fn loglog(input: &LogLog) -> String {
     let empty = [Motion::default()];
@@ -116,12 +115,12 @@ fn ring_pen() -> Pen {
     Pen::new(INK, 1.5)
 }
 
-/// Where errors that no plot can tell apart begin.
+/// The value below which no plot distinguishes errors.
 fn floor(input: &LogLog) -> f64 {
     input.y_floor.filter(|f| drawable(*f) && *f > 0.0).unwrap_or(0.0)
 }
 
-/// The measures that all plots share.
+/// The layout that all plots share.
 struct Plan<'a> {
     input: &'a LogLog,
     names: &'a [&'a str],
@@ -129,7 +128,7 @@ struct Plan<'a> {
     y: Axis,
     left: f64,
     height: f64,
-    /// From one plot to the next on its right.
+    /// Distance from one plot to the next on its right.
     step: f64,
 }
 
@@ -203,7 +202,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The points with a smaller error than every point that costs no more, from cheap to dear.
+/// The points with a smaller error than every point that costs no more, from cheap to expensive.
 fn front(motion: &Motion, floor: f64) -> Vec<(f64, f64)> {
     let mut points: Vec<_> = motion.methods.iter().flat_map(|m| m.drawn(floor)).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -216,7 +215,7 @@ fn front(motion: &Motion, floor: f64) -> Vec<(f64, f64)> {
     front
 }
 
-/// A step line: the least error to be had for a cost.
+/// A step line: the smallest error for a cost.
 fn draw_front(canvas: &mut Canvas<'_>, frame: &Frame, front: &[(f64, f64)]) {
     let mut path: Vec<(f64, f64)> = Vec::new();
     for &point in front {

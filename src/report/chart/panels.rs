@@ -8,29 +8,29 @@ use super::series::{drawable, range, runs, thin_runs};
 const WIDTH: f64 = 800.0;
 const HEIGHT: f64 = 160.0;
 
-/// A picture of panels one above the other.
+/// A chart of panels, one above the other.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Panels<'a> {
-    /// What the picture shows.
+    /// The title of the chart.
     pub title: String,
     /// A second line; may be empty.
     pub subtitle: String,
-    /// What the common axis is, with its unit: `time (s)`.
+    /// The quantity on the common axis, with its unit: `time (s)`.
     pub x_label: String,
-    /// From top to bottom.
+    /// The panels, from top to bottom.
     pub panels: Vec<Panel<'a>>,
 }
 
 /// One panel.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Panel<'a> {
-    /// What the panel shows.
+    /// The title of the panel.
     pub title: String,
-    /// What the vertical axis is, with its unit: `angular rate (rad/s)`.
+    /// The quantity on the vertical axis, with its unit: `angular rate (rad/s)`.
     pub y_label: String,
-    /// Drawn in this order, truth last.
+    /// The lines, drawn in this order, truth last.
     pub lines: Vec<Line<'a>>,
-    /// The period of an angle, in the unit of the axis: no line is drawn across a wrap.
+    /// The period of an angle, in the unit of the axis: no line crosses a wrap.
     pub wrap: Option<f64>,
     /// Whether the vertical axis is logarithmic.
     pub log_y: bool,
@@ -39,23 +39,23 @@ pub struct Panel<'a> {
 /// One line of a panel.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Line<'a> {
-    /// What the line is.
+    /// Its name.
     pub name: &'a str,
-    /// Times; as many of these and of `y` are used as there are of both.
+    /// Times. If `x` and `y` differ in length, only the common part counts.
     pub x: &'a [f64],
     /// Values; one that is not finite leaves a gap.
     pub y: &'a [f64],
-    /// How the line is drawn.
+    /// Its kind, which sets its style.
     pub kind: LineKind,
 }
 
-/// What a line means, which decides how it is drawn.
+/// The meaning of a line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum LineKind {
-    /// A measured or estimated value, in a colour of its own with its name at its right end.
+    /// A measured or estimated value, in its own colour with its name at its right end.
     #[default]
     Value,
-    /// A true value: thin and dark, over the others, named in the legend once.
+    /// A true value: thin and dark, over the others, once in the legend.
     Truth,
 }
 
@@ -91,7 +91,7 @@ pub fn panels(input: &Panels<'_>) -> String {
     })
 }
 
-/// A panel with its place and axes.
+/// A panel with its position and axes.
 struct Plan<'a> {
     panel: &'a Panel<'a>,
     colors: Vec<Color>,
@@ -133,14 +133,14 @@ fn plan<'a>(panels: &'a [Panel<'a>]) -> Vec<Plan<'a>> {
     panels.iter().zip(colors(panels)).map(plan).collect()
 }
 
-/// The lines that are not truth.
+/// The lines other than truth.
 fn values<'a>(panel: &'a Panel<'a>) -> impl Iterator<Item = &'a Line<'a>> {
     let value = |l: &&Line<'_>| l.kind == LineKind::Value;
     panel.lines.iter().filter(value)
 }
 
-/// A colour for every value of every panel: a name keeps its colour from panel to panel, and a
-/// panel with no name in common with those above it starts afresh.
+/// A colour for every value of every panel. A name keeps its colour between panels; a panel without a name in
+/// common with those above starts again.
 fn colors(panels: &[Panel<'_>]) -> Vec<Vec<Color>> {
     let mut known: Vec<(&str, usize)> = Vec::new();
     let mut all = Vec::new();
@@ -231,7 +231,7 @@ impl Plan<'_> {
         let placed: Vec<Vec<(f64, f64)>> =
             runs(line.x, line.y, self.panel.wrap).into_iter().map(place).collect();
         let runs = thin_runs(&placed, self.frame.width);
-        // A value alone is a dot; among many, a dash as long as a pixel column.
+        // A single value is a dot; among many, a dash as long as a pixel column.
         let lone = if runs.len() <= 100 { 2.5 } else { 0.5 };
         for run in runs {
             match run.as_slice() {
@@ -244,8 +244,8 @@ impl Plan<'_> {
         }
     }
 
-    /// Where a line's name belongs: its end, for a noisy line the middle of its last hundredth.
-    /// A line without a value keeps its name, half-way up.
+    /// The position of a line's name: its end, for a noisy line the middle of its last hundredth. A line without a
+    /// value keeps its name, half-way up.
     fn end(&self, line: &Line<'_>) -> Option<(f64, f64)> {
         let runs = runs(line.x, line.y, self.panel.wrap);
         let Some(run) = runs.last() else {

@@ -1,17 +1,17 @@
-//! What charts share: a head, a frame with two axes, a legend, and labels at the ends of lines.
+//! Shared parts of charts: a head, a frame with two axes, a legend, and labels at the ends of lines.
 
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Color, FAINT, Font, INK, Mark, Pen, RULE, dark};
 use super::series::spread;
 
-/// The size of the letters of ticks, labels and legends, in pixels.
+/// The font size of ticks, labels and legends, in pixels.
 pub(super) const SMALL: f64 = 11.5;
-/// From one line of text to the next.
+/// Distance between lines of text.
 pub(super) const LEADING: f64 = 15.0;
-/// Free space at the edges of a picture.
+/// Margin of a chart.
 pub(super) const MARGIN: f64 = 16.0;
 
-/// The title of a picture and the line below it, broken into lines that fit.
+/// The title of a chart and the line below it, wrapped to fit.
 pub(super) struct Head {
     title: Vec<String>,
     subtitle: Vec<String>,
@@ -37,7 +37,7 @@ impl Head {
         MARGIN + 22.0 * self.title.len() as f64 + 17.0 * self.subtitle.len() as f64
     }
 
-    /// The length of the longest line: a single long word does not break.
+    /// The width of the longest line: a single long word does not wrap.
     pub fn width(&self) -> f64 {
         longest(&Self::title_font(), &self.title).max(longest(&Self::subtitle_font(), &self.subtitle))
     }
@@ -56,12 +56,12 @@ impl Head {
     }
 }
 
-/// The length of the longest of some lines of text.
+/// The width of the longest of some lines of text.
 pub(super) fn longest<S: AsRef<str>>(font: &Font, lines: &[S]) -> f64 {
     lines.iter().map(|line| font.width(line.as_ref())).fold(0.0, f64::max)
 }
 
-/// The place of a plot with its axes.
+/// The position of a plot with its axes.
 pub(super) struct Frame {
     pub left: f64,
     pub top: f64,
@@ -72,7 +72,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// How much the labels left of a plot take.
+    /// The width of the labels left of a plot.
     pub fn left_margin(y: &Axis, y_label: &str) -> f64 {
         let font = Font::new(SMALL, INK);
         let ticks = y.ticks.iter().map(|t| font.width(&t.label));
@@ -89,12 +89,12 @@ impl Frame {
         self.top + self.height
     }
 
-    /// Where a point of the data lies on the sheet.
+    /// The position of a data point on the sheet.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.left + self.x.place(x) * self.width, self.bottom() - self.y.place(y) * self.height)
     }
 
-    /// The grid, the lines of the axes, and the labels of the ticks.
+    /// The grid, the axis lines, and the tick labels.
     pub fn draw_axes(&self, canvas: &mut Canvas<'_>, x_labels: bool) {
         let (grid, font) = (Pen::new(RULE, 0.75), Font::new(SMALL, INK));
         for tick in &self.x.ticks {
@@ -126,7 +126,7 @@ impl Frame {
         canvas.path(&corners, &edge);
     }
 
-    /// What the axes mean: below the plot, and `margin` left of it less the sheet's own.
+    /// The axis labels: below the plot, and left of it by `margin` less the sheet's own.
     pub fn draw_labels(&self, canvas: &mut Canvas<'_>, x_label: &str, y_label: &str, margin: f64) {
         let font = Font::new(12.0, INK).anchor(Anchor::Middle);
         let middle = self.left + self.width / 2.0;
@@ -138,7 +138,7 @@ impl Frame {
         }
     }
 
-    /// Says that there is nothing to show.
+    /// Writes that there is no data.
     pub fn draw_no_data(&self, canvas: &mut Canvas<'_>) {
         let font = Font::new(14.0, FAINT).anchor(Anchor::Middle);
         let at = (self.left + self.width / 2.0, self.top + self.height / 2.0);
@@ -157,10 +157,10 @@ pub(super) enum Sign {
     Area(Color, f64),
 }
 
-/// Entries in rows, as many to a row as fit.
+/// Entries in rows, as many in each as fit.
 pub(super) struct Legend {
     entries: Vec<(Sign, String)>,
-    /// Where each entry starts, from the legend's upper left corner.
+    /// The position of each entry relative to the legend's upper left corner.
     places: Vec<(f64, f64)>,
     pub width: f64,
     pub height: f64,
@@ -178,7 +178,7 @@ impl Legend {
         let (mut x, mut y, mut widest) = (0.0, 0.0, 0.0_f64);
         let mut places = Vec::new();
         for length in lengths {
-            // Several rows stand in columns.
+            // Several rows align in columns.
             let length = if one_row { length } else { column };
             if x > 0.0 && x + length > width {
                 (x, y) = (0.0, y + 18.0);
@@ -220,7 +220,7 @@ pub(super) struct EndLabel {
     pub color: Color,
     pub mark: Option<Mark>,
     pub bold: bool,
-    /// Where the line ends.
+    /// The end of the line.
     pub end: (f64, f64),
 }
 
@@ -234,13 +234,13 @@ impl EndLabel {
         if self.mark.is_some() { 12.0 } else { 0.0 }
     }
 
-    /// How far the labels reach to the right of the plot.
+    /// How far the labels extend to the right of the plot.
     pub fn margin(labels: &[Self]) -> f64 {
         let reach = |l: &Self| 22.0 + l.indent() + l.font().width(&l.text);
         labels.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// Draws labels in a column right of the plot, joined to their lines' ends.
+    /// Draws labels in a column right of the plot, connected to the ends of their lines.
     pub fn draw(labels: &[Self], canvas: &mut Canvas<'_>, frame: &Frame) {
         let wanted: Vec<f64> = labels.iter().map(|l| l.end.1).collect();
         let top = frame.top - 4.0;

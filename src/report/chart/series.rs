@@ -1,14 +1,14 @@
-//! What is done to data before it is drawn: gaps, wraps, and fewer points.
+//! Prepares data for drawing: gaps, wraps, and fewer points.
 
-/// The largest size of a number that is drawn; beyond it a picture's arithmetic would overflow.
+/// The largest drawable magnitude; beyond it a chart's arithmetic would overflow.
 const LARGEST: f64 = 1e300;
 
-/// Whether a number can be drawn.
+/// Whether a number is drawable.
 pub(super) fn drawable(v: f64) -> bool {
     v.abs() <= LARGEST
 }
 
-/// The least and greatest of the numbers that can be drawn.
+/// The minimum and maximum of the drawable numbers.
 pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     values.into_iter().filter(|&v| drawable(v)).fold(None, |range, v| match range {
         None => Some((v, v)),
@@ -16,8 +16,8 @@ pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)>
     })
 }
 
-/// Cuts points into runs to be joined by lines: a value that is not finite makes a gap, and so
-/// does a step of more than half of `wrap`. Points out of order of `x` are put in order.
+/// Cuts points into runs of connected points. A non-finite value makes a gap, and so does a step of more than half
+/// of `wrap`. Sorts points by `x` if necessary.
 pub(super) fn runs(x: &[f64], y: &[f64], wrap: Option<f64>) -> Vec<Vec<(f64, f64)>> {
     let mut points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
     points.retain(|p| drawable(p.0));
@@ -41,8 +41,8 @@ pub(super) fn runs(x: &[f64], y: &[f64], wrap: Option<f64>) -> Vec<Vec<(f64, f64
     runs
 }
 
-/// Keeps, of the points (in pixels) in each pixel column, the highest and the lowest, in order:
-/// at most two points a column, and every spike stays.
+/// Keeps the highest and the lowest of the points (in pixels) in each pixel column, in order: at most two points in
+/// a column, and every spike remains.
 pub(super) fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let column = |p: &(f64, f64)| p.0.floor();
     let mut kept = Vec::new();
@@ -56,8 +56,8 @@ pub(super) fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     kept
 }
 
-/// Thins every run; where there are more runs than half the pixel columns, one stroke a column
-/// from the lowest to the highest point stands for them.
+/// Thins every run. If there are more runs than half the pixel columns, one stroke in each column from the lowest
+/// to the highest point replaces them.
 pub(super) fn thin_runs(runs: &[Vec<(f64, f64)>], columns: f64) -> Vec<Vec<(f64, f64)>> {
     if (runs.len() as f64) <= (columns / 2.0).max(1.0) {
         return runs.iter().map(|run| thin(run)).collect();
@@ -79,13 +79,13 @@ fn extremes(group: &[(f64, f64)]) -> (usize, usize) {
     (low, high)
 }
 
-/// Moves positions apart until neighbours are `gap` away, each as little as can be, within
-/// `lo..=hi` as far as there is room. Answers in the order given.
+/// Moves positions apart until neighbours are `gap` apart, each as little as possible, within `lo..=hi` as far as
+/// there is room. Keeps the given order.
 pub(super) fn spread(wanted: &[f64], gap: f64, lo: f64, hi: f64) -> Vec<f64> {
     let count = wanted.len();
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]).then(a.cmp(&b)));
-    // Isotonic regression of what is wanted less the gaps: clusters of (sum, count).
+    // Isotonic regression of the wanted positions less the gaps: clusters of (sum, count).
     let mut clusters: Vec<(f64, usize)> = Vec::new();
     for (rank, &i) in order.iter().enumerate() {
         let mut cluster = (wanted[i] - rank as f64 * gap, 1);

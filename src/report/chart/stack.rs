@@ -1,6 +1,6 @@
-//! Several pictures one under the other, as one document.
+//! Several charts one below the other, as one document.
 
-/// Stacks charts of this module, each whole and in its own scale.
+/// Stacks charts of this module, each whole and at its own scale.
 #[must_use]
 pub fn stacked(charts: &[String]) -> String {
     let sizes: Vec<_> = charts.iter().map(|chart| (size(chart, "width"), size(chart, "height"))).collect();
@@ -19,7 +19,7 @@ pub fn stacked(charts: &[String]) -> String {
     text + "</svg>\n"
 }
 
-/// An attribute of a document's first element; 0 where there is none.
+/// A numeric attribute of a document's first element; 0 if absent.
 fn size(chart: &str, name: &str) -> f64 {
     let value = chart.split_once(&format!(" {name}=\"")).and_then(|(_, rest)| rest.split('"').next());
     value.and_then(|value| value.parse().ok()).unwrap_or(0.0)

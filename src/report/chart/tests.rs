@@ -1,4 +1,4 @@
-//! Every chart is read back: as a document, as what it says, and as what it draws.
+//! Every chart is read back: as a document, as its text, and as its drawing.
 
 use super::axis::{Axis, Options, superscript};
 use super::canvas::{Font, INK};
@@ -8,7 +8,7 @@ use super::*;
 /// Units of a document to a pixel.
 const UNITS: f64 = 4.0;
 
-/// An element as written: its name, its attributes, and the text in it.
+/// An element as written: its name, its attributes, and its text.
 #[derive(Debug, Default)]
 struct Element {
     name: String,
@@ -36,7 +36,7 @@ impl Element {
     }
 }
 
-/// Resolves the five entities of XML; any other `&` is an error.
+/// Resolves the five XML entities; any other `&` is an error.
 fn unescaped(text: &str) -> String {
     let mut plain = String::new();
     let mut rest = text;
@@ -69,7 +69,7 @@ fn element(tag: &str) -> Element {
     element
 }
 
-/// Reads a well-formed document of one root; panics on any other.
+/// Reads a well-formed document with one root; panics otherwise.
 fn read(svg: &str) -> Vec<Element> {
     assert!(svg.chars().all(|c| c == '\n' || !c.is_control()), "a control character");
     let (mut elements, mut open): (Vec<Element>, Vec<usize>) = (Vec::new(), Vec::new());
@@ -97,7 +97,7 @@ fn read(svg: &str) -> Vec<Element> {
     elements
 }
 
-/// Left, top, right and bottom of a text, in pixels, by the generous measure of [`Font`].
+/// Left, top, right and bottom of a text, in pixels, by the upper estimate of [`Font`].
 fn extent(text: &Element) -> (f64, f64, f64, f64) {
     let size = text.number("font-size") / UNITS;
     let bold = text.attributes.iter().any(|a| a.0 == "font-weight");
@@ -116,8 +116,7 @@ fn extent(text: &Element) -> (f64, f64, f64, f64) {
     (x + start, y - half, x + start + long, y + half)
 }
 
-/// What every picture must satisfy: well-formed, letters of 11 px or more, and no text clipped or
-/// over another.
+/// What holds for every chart: well-formed, letters of 11 px or more, and no text clipped or overlapping another.
 fn check(svg: &str) -> Vec<Element> {
     let elements = read(svg);
     let root = &elements[0];
@@ -141,7 +140,7 @@ fn check(svg: &str) -> Vec<Element> {
     elements
 }
 
-/// All that a picture says, with broken lines joined by a space.
+/// All text of a chart, with wrapped lines joined by a space.
 fn words(elements: &[Element]) -> String {
     let texts = elements.iter().filter(|e| e.name == "text").map(|e| e.text.as_str());
     texts.collect::<Vec<_>>().join(" ")
@@ -154,7 +153,7 @@ fn assert_says(svg: &str, labels: &[&str]) {
     }
 }
 
-/// Numbers between −1 and 1 that look random and are the same everywhere.
+/// Pseudo-random numbers between −1 and 1, the same everywhere.
 fn noise(i: usize) -> f64 {
     let mixed = (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -175,7 +174,7 @@ fn one_panel(line: Line<'_>, wrap: Option<f64>) -> Panels<'_> {
     Panels { title: "a line".into(), x_label: "time (s)".into(), panels: vec![panel], ..Panels::default() }
 }
 
-/// The paths of a picture that have the colour of the first value.
+/// The paths of a chart with the colour of the first value.
 fn first_paths(svg: &str) -> Vec<Vec<(f64, f64)>> {
     let first =
         |e: &&Element| e.name == "polyline" && e.get("stroke") == "#0072B2" && e.get("opacity") == "1";
@@ -336,7 +335,7 @@ fn a_grid_says_every_label_and_tells_verdicts_by_sign_and_number() {
     let svg = grid(&grid_example());
     let mut labels = vec!["Where methods fail", "first failing step", "step 12", "1.3·10⁻⁴°", "of ±90°"];
     labels.extend(METHODS);
-    // 15 rows of 17 cells, of which a third each, and an 18th that is missing.
+    // 15 rows of 17 cells with a third of each verdict, and a missing 18th.
     labels.extend(["stable (85)", "degraded (85)", "fails (85)", "not run (15)"]);
     assert_says(&svg, &labels);
     assert_eq!(svg, grid(&grid_example()), "the same bytes");
@@ -406,7 +405,7 @@ fn no_numbers_make_a_chart_panic_or_draw_outside() {
     }
 }
 
-/// Draws every kind of chart of the same numbers.
+/// Draws every kind of chart from the same numbers.
 fn all_charts_of(x: &[f64], y: &[f64]) {
     let points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
     for log in [false, true] {
