@@ -1,9 +1,8 @@
 //! Where bytes go out and come back: serial ports, pseudo terminals, sockets, files.
 //!
-//! A link does not know what is in a packet or when it is due. [`Address`] opens it on a tokio runtime. It waits
-//! for its
-//! [`peer`](Link::peer) and gives away two halves: a [`Sender`] for the pacing thread, which never waits, allocates or
-//! locks, and a [`Receiver`] for a task.
+//! A link does not know what is in a packet or when it is due. It opens at an [`Address`], on a tokio runtime. It
+//! waits for its [`peer`](Link::peer) and gives away two halves: a [`Sender`] for the pacing thread, which never
+//! waits, allocates or locks, and a [`Receiver`] for a task.
 //!
 //! Every kind of link is one file of the same shape: its line in the table, its address, how it opens, whom it
 //! waits for at the start and at the end, then its two halves. [`SCHEMES`] lists them. A link reaches beyond this

@@ -1,15 +1,16 @@
 //! Estimated attitude against the truth.
 //!
-//! [`judge`] takes a whole series of estimates: it finds when each of them held (by the echo of a sample's time, or by
-//! the delay at which the motion agrees best), splits the error into inclination and heading ([`AttitudeError`]), and
-//! where the error is large tries the usual mistakes of axes, order and sign, so that the report can name one.
+//! [`judge`] takes a whole series of estimates. It finds when each of them held (from the echo of a sample's time,
+//! or from the delay at which the motion agrees best) and splits the error into inclination and heading
+//! ([`AttitudeError`]). Where the error is large it tries the usual mistakes of axes, order and sign, so that the
+//! report can name one.
 //!
 //! ```
 //! use ratetable::geometry::Attitude;
 //! use ratetable::score::{HeldAt, Options, Timed, judge};
 //! use ratetable::time::SimTime;
 //!
-//! // A vehicle that stands, and an estimate that is right.
+//! // A vehicle at rest, and a correct estimate.
 //! let truth = |_| Some(Attitude::IDENTITY);
 //! let estimates = [1, 2, 3].map(|s| {
 //!     let t = SimTime(s * 1_000_000_000);

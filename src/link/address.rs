@@ -32,7 +32,7 @@ pub enum Address {
     TcpIn(Endpoint),
     /// A TCP connection to a listening peer.
     TcpOut(Endpoint),
-    /// A UDP socket that sends to whoever sends to it first.
+    /// A UDP socket that sends to its first sender.
     UdpIn(Endpoint),
     /// A UDP socket that sends to one address.
     UdpOut(Endpoint),

@@ -120,7 +120,7 @@ impl Sender {
 
     /// Sends what is kept of earlier packets as far as the link accepts it now; never waits.
     ///
-    /// `Done` when nothing is kept any more, `Full` otherwise.
+    /// `Done` when nothing is left, `Full` otherwise.
     fn flush_carry(&mut self) -> Sent {
         while !self.carry.kept().is_empty() {
             match write(&mut *self.to, self.carry.kept()) {

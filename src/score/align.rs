@@ -1,17 +1,17 @@
 //! Constant rotations between the frames of estimate and truth, in closed form.
 //!
-//! With a world turned by `A` and a body turned by `B` an estimate is `q = A ⊗ q_truth ⊗ B`, which is linear in each. The
-//! pair that brings the truth nearest to all estimates is the first pair of singular vectors of a matrix of four by
-//! four (the closed form of the hand-eye problem `AX = YB` for rotations). What the motion does not tell stays as it
-//! is. With the body as it is, `A` is the mean of the errors `q ⊗ q_truth*` (Markley et al., *Averaging Quaternions*,
-//! JGCD 30(4), 2007).
+//! With the world rotated by `A` and the body by `B` an estimate is `q = A ⊗ q_truth ⊗ B`, which is linear in each.
+//! The pair that brings the truth closest to all estimates is the first pair of singular vectors of a 4 × 4 matrix
+//! (the closed form of the hand-eye problem `AX = YB` for rotations). A rotation that the motion does not determine
+//! stays the identity. With the body unchanged, `A` is the mean of the errors `q ⊗ q_truth*` (Markley et al.,
+//! *Averaging Quaternions*, JGCD 30(4), 2007).
 
 use super::figures::Aligned;
 use crate::geometry::log;
 use glam::DQuat;
 use nalgebra::{Matrix4, SymmetricEigen, Vector4};
 
-/// What is taken out of the estimates before they are judged.
+/// The rotations to remove from the estimates before judging.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Align {
     /// Nothing.
@@ -33,10 +33,10 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// None.
+    /// No rotation.
     pub const SAME: Frames = Frames { world: DQuat::IDENTITY, body: DQuat::IDENTITY };
 
-    /// The best for pairs of estimate and truth.
+    /// The best rotations for pairs of estimate and truth.
     pub fn of(align: Align, pairs: impl Iterator<Item = (DQuat, DQuat)>) -> Frames {
         match align {
             Align::None => Frames::SAME,
@@ -51,12 +51,12 @@ impl Frames {
         }
     }
 
-    /// An estimate with them taken out.
+    /// An estimate without these rotations.
     pub fn undone(&self, q: DQuat) -> DQuat {
         self.world.conjugate() * q * self.body.conjugate()
     }
 
-    /// As angles.
+    /// The rotations as angles.
     pub fn angles(&self) -> Aligned {
         Aligned {
             world_deg: log(self.world).length().to_degrees(),
@@ -66,7 +66,7 @@ impl Frames {
     }
 }
 
-/// The constant turn about the vertical that brings estimates nearest to the truth, rad: the `ψ` that maximises
+/// The constant turn about the vertical that brings the estimates closest to the truth, rad: the `ψ` that maximises
 /// `Σ (e_w·cos(ψ/2) + e_z·sin(ψ/2))²`.
 fn heading(errors: impl Iterator<Item = DQuat>) -> f64 {
     let (sine, cosine) =
@@ -74,7 +74,7 @@ fn heading(errors: impl Iterator<Item = DQuat>) -> f64 {
     libm::atan2(sine, cosine)
 }
 
-/// As a column: w, x, y, z.
+/// A quaternion as a column: w, x, y, z.
 fn column(q: DQuat) -> Vector4<f64> {
     Vector4::new(q.w, q.x, q.y, q.z)
 }
@@ -83,20 +83,20 @@ fn quat(v: Vector4<f64>) -> DQuat {
     DQuat::from_xyzw(v[1], v[2], v[3], v[0])
 }
 
-/// The mean of rotations whose signs are free: the eigenvector of the largest eigenvalue of `Σ e eᵀ`.
+/// The mean of rotations with arbitrary quaternion signs: the eigenvector of the largest eigenvalue of `Σ e eᵀ`.
 pub(super) fn mean(errors: impl Iterator<Item = DQuat>) -> DQuat {
     let sum: Matrix4<f64> = errors.map(column).map(|e| e * e.transpose()).sum();
     let eigen = SymmetricEigen::new(sum);
     quat(eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned()).normalize()
 }
 
-/// Both rotations: with `G_ij = Σ q·(e_i ⊗ q_truth ⊗ e_j)` over the units `e` of the quaternions, `Σ q·(A ⊗ q_truth ⊗ B)` is
-/// `Aᵀ G B`, so they are the first singular vectors of `G`.
+/// Both rotations. With `G_ij = Σ q·(e_i ⊗ q_truth ⊗ e_j)` over the unit quaternions `e`, `Σ q·(A ⊗ q_truth ⊗ B)`
+/// is `Aᵀ G B`, so they are the first singular vectors of `G`.
 fn both(pairs: impl Iterator<Item = (DQuat, DQuat)>) -> Frames {
     let mut last: Option<(DQuat, DQuat)> = None;
     let mut sum = Matrix4::zeros();
     for (mut q, mut truth) in pairs {
-        // Of an estimate's two signs that which is continuous in time goes with the truth's that is.
+        // Choose an estimate's sign to be continuous in time when the truth's is.
         if let Some((q_before, truth_before)) = last {
             q = if q.dot(q_before) < 0.0 { -q } else { q };
             truth = if truth.dot(truth_before) < 0.0 { -truth } else { truth };
@@ -118,7 +118,7 @@ fn both(pairs: impl Iterator<Item = (DQuat, DQuat)>) -> Frames {
     Frames { world, body }
 }
 
-/// Singular values that differ by less than this share leave a turn of 0.01 deg untold.
+/// Singular values that differ by less than this share leave a turn of 0.01 deg undetermined.
 const TIED: f64 = 4e-9;
 
 /// The two largest singular values, and the left vector of the first.
@@ -148,7 +148,7 @@ mod tests {
             a in prop::array::uniform3(-2.0..2.0f64), b in prop::array::uniform3(-2.0..2.0f64),
         ) {
             let (a, b) = (exp(DVec3::from_array(a)), exp(DVec3::from_array(b)));
-            // The signs of the quaternions are free.
+            // The signs of the quaternions are arbitrary.
             let sign = |k: i32| if k % 7 == 3 { -1.0 } else { 1.0 };
             let pairs = (0..200).map(|k| (a * motion(k) * b * sign(k), motion(k)));
             let found = Frames::of(Align::Frames, pairs.clone());
@@ -168,14 +168,14 @@ mod tests {
 
     #[test]
     fn what_the_motion_does_not_tell_stays_as_it_is() {
-        // Turning about the vertical alone, a heading of the world and one of the body are the same thing.
+        // If the motion only turns about the vertical, headings of world and body are indistinguishable.
         let turn = |k: i32| exp(DVec3::Z * f64::from(k) * 0.05);
         let off = exp(DVec3::Z * 0.4);
         let found = Frames::of(Align::Frames, (0..100).map(|k| (off * turn(k), turn(k))));
         assert!(angle_between(found.undone(off * turn(7)), turn(7)) < 1e-6);
         let angles = found.angles();
         assert!((angles.world_deg + angles.body_deg - 0.4f64.to_degrees()).abs() < 1e-3, "{angles:?}");
-        // Nothing to take out is nothing taken out.
+        // Equal frames give no rotation.
         let none = Frames::of(Align::Frames, (0..100).map(|k| (turn(k), turn(k)))).angles();
         assert!(none.world_deg < 1e-4 && none.body_deg < 1e-4, "{none:?}");
     }

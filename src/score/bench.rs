@@ -1,4 +1,4 @@
-//! The truth, and errors of estimates against it at a shift of time.
+//! The truth, and errors of estimates against it at a time shift.
 
 use super::align::Frames;
 use super::delay::{self, Fit};
@@ -13,14 +13,14 @@ use glam::DQuat;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// The delays that are looked for, ns.
+/// The range of the delay search, ns.
 pub(super) const DELAYS: Range<i64> = -500_000_000..2_000_000_000;
-/// How finely: a motion of 60 Hz still has its dip between.
+/// Its step: a motion of 60 Hz still has its dip between two steps.
 pub(super) const STEP: i64 = 4_000_000;
-/// As many estimates tell a constant rotation.
+/// The number of estimates to determine a constant rotation.
 const ALIGNED: usize = 100_000;
 
-/// The truth and what is asked of it.
+/// The truth and the options.
 pub(super) struct Bench<'a> {
     pub truth: Truth<'a>,
     pub options: Options,
@@ -28,7 +28,7 @@ pub(super) struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// For estimates from the first to the last of these times; without `search` the times are not looked for.
+    /// A bench for estimates between the first and the last of these times. Only with `search` can it find a delay.
     pub fn new<'a>(truth: Truth<'a>, series: &Series, options: Options, search: bool) -> Option<Bench<'a>> {
         let times = series.times();
         let (first, last) = (*times.iter().min()?, *times.iter().max()?);
@@ -44,7 +44,7 @@ impl Bench<'_> {
         Some(bench)
     }
 
-    /// The truth at a time, and the rest before it.
+    /// The truth at a time, including the rest before the scene.
     pub fn around(&self, t: i64) -> Option<DQuat> {
         let Options { from, until, rest, .. } = self.options;
         let t = SimTime(t);
@@ -52,19 +52,19 @@ impl Bench<'_> {
         if known { (self.truth)(t.max(from)).map(|truth| truth.q) } else { None }
     }
 
-    /// The truth at a time at which estimates count.
+    /// The truth at a time where estimates count.
     fn at(&self, t: i64) -> Option<DQuat> {
         let Options { from, until, settle, .. } = self.options;
         let t = SimTime(t);
         if from + settle <= t && t <= until { (self.truth)(t).map(|truth| truth.q) } else { None }
     }
 
-    /// The delay of a series on the truth's clock, looked for every `step` ns.
+    /// The delay of a series on the truth's clock, searched in steps of `step` ns.
     pub fn delay(&self, series: &Series, step: i64) -> Option<Fit> {
         delay::within(&self.grid, &|t| self.around(t), series, DELAYS, step)
     }
 
-    /// Estimate and truth of a series whose times are `ahead`, where there is a truth.
+    /// Pairs of estimate and truth for a series whose clock is `ahead`, where the truth is known.
     fn pairs<'s>(
         &'s self,
         series: &'s Series,
@@ -76,7 +76,7 @@ impl Bench<'_> {
         })
     }
 
-    /// The root mean square of the whole error, rad; `None` where no estimate has a truth.
+    /// The root mean square of the total error, rad; `None` if no estimate has a truth.
     pub fn rms(&self, series: &Series, ahead: i64) -> Option<f64> {
         let frames = self.frames(series, ahead, self.options.align);
         let (mut sum, mut count) = (0.0, 0u64);
@@ -111,7 +111,7 @@ impl Bench<'_> {
         })
     }
 
-    /// All errors of a series, how many there are, and how much of the truth they cover.
+    /// All errors of a series, the number of estimates, and the share of the truth's time that they cover.
     pub fn errors(&self, series: &Series, ahead: i64, frames: Frames) -> Option<(Errors, u64, f64)> {
         let (mut tally, mut covered) = (Tally::default(), Covered::new(series));
         for row in self.rows(series, ahead, frames) {
@@ -131,9 +131,9 @@ impl Bench<'_> {
     }
 }
 
-/// How much time rows cover.
+/// The time that rows cover.
 struct Covered {
-    /// Rows further apart leave a gap, ns.
+    /// Rows further apart than this leave a gap, ns.
     gap: i64,
     interval: i64,
     last: Option<i64>,

@@ -1,16 +1,16 @@
 //! Converts the other side's clock to ours.
 
-/// Times of a clock of its own as times of ours, ns: a straight line through (own, arrival), which takes out its
-/// offset and its drift and leaves the mean of the way here in.
+/// Converts times of another clock to ours, ns: a straight line through (own, arrival). It removes offset and drift
+/// and leaves the mean transmission time in.
 ///
-/// `None` where the two do not go together: a clock that stood still, jumped or was set.
+/// `None` if the two do not agree: a clock that stood still, jumped or was set.
 pub(super) fn onto_ours(own: &[i64], arrival: &[i64]) -> Option<Vec<i64>> {
     let (&own_0, &arrival_0) = (own.first()?, arrival.first()?);
     let x: Vec<f64> = own.iter().map(|t| t.wrapping_sub(own_0) as f64 * 1e-9).collect();
     let y: Vec<f64> = arrival.iter().map(|t| t.wrapping_sub(arrival_0) as f64 * 1e-9).collect();
     let mut within = vec![true; x.len()];
     let (mut offset, mut slope) = line(&x, &y, &within)?;
-    // What a stall delayed lies far above the line that all others make.
+    // Messages that a stall delayed lie far above the line of all others.
     for _ in 0..3 {
         let off = |i: usize| (y[i] - offset - slope * x[i]).abs();
         let mut sizes: Vec<f64> = (0..x.len()).map(off).collect();
@@ -44,7 +44,8 @@ mod tests {
 
     #[test]
     fn offset_and_drift_of_a_clock_are_taken_out_in_spite_of_a_stall() {
-        // 40 ppm fast, 5000 s ahead; ways of 3 to 8 ms, and half a second of messages that came all at once.
+        // 40 ppm fast, 5000 s ahead; transmission takes 3 to 8 ms, and half a second of messages arrived all at
+        // once.
         let held: Vec<i64> = (0..3000).map(|k| k * 20_000_000).collect();
         let own: Vec<i64> = held.iter().map(|t| 5_000_000_000_000 + t + t / 25_000).collect();
         let way = |k: usize| 3_000_000 + (k as i64 * 7919 % 11) * 500_000;
@@ -52,7 +53,7 @@ mod tests {
         let arrival: Vec<i64> = held.iter().enumerate().map(|(k, &t)| stall(t) + way(k)).collect();
         let ours = onto_ours(&own, &arrival).unwrap();
         for (ours, held) in ours.iter().zip(&held) {
-            // The mean way is 5.5 ms.
+            // The mean transmission time is 5.5 ms.
             assert!((ours - held - 5_500_000).abs() < 300_000, "{} at {held}", ours - held);
         }
     }

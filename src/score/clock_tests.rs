@@ -1,5 +1,5 @@
-//! Clocks, delays and what may stand in their way: an offset is right within 5 ms or declared unknown, and no figure is
-//! ever wrong without a word.
+//! Clocks, delays and disturbances: an offset is right within 5 ms or declared unknown, and no figure is ever wrong
+//! without a notice.
 
 use super::*;
 use crate::geometry::{Attitude, Euler, exp};
@@ -30,7 +30,7 @@ fn flight(t: f64) -> Attitude {
     euler(0.45 * libm::sin(0.7 * t), 0.25 * libm::sin(1.1 * t + 0.5), 0.1 * t + 0.5 * libm::sin(0.3 * t))
 }
 
-/// Rest, then one turn after the other.
+/// Rest, then a sequence of turns.
 fn turns(t: f64) -> Attitude {
     let roll = 0.5 * (step(t, 8.0, 2.0) - step(t, 12.0, 2.0));
     let pitch = 0.4 * (step(t, 16.0, 1.5) - step(t, 19.0, 3.0));
@@ -58,7 +58,7 @@ fn vibration(t: f64) -> Attitude {
     euler(0.3 * (step(t, 10.0, 2.0) - step(t, 26.0, 3.0)) + shake, 0.3 * step(t, 18.0, 2.0) - shake, 0.0)
 }
 
-/// A rocking that repeats for ever.
+/// A rocking that repeats without end.
 fn rocking(t: f64) -> Attitude {
     euler(0.35 * libm::sin(TAU * 0.25 * t), 0.0, 0.0)
 }
@@ -72,13 +72,13 @@ const MOTIONS: [(&str, Motion); 6] = [
     ("rocking", rocking),
 ];
 
-/// What was done to an estimate.
+/// The known properties of a generated estimate.
 #[derive(Debug)]
 struct Made {
     /// Its clock ahead of the truth's, delay included, s.
     ahead: f64,
     series: Series,
-    /// The root mean square error at the times at which the estimates held, deg.
+    /// The root mean square error at the times when the estimates held, deg.
     rms_deg: f64,
 }
 
@@ -86,8 +86,8 @@ fn normal(random: &mut impl Rng) -> f64 {
     (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0
 }
 
-/// An estimate of a motion: the clock `offset` s ahead, late by a delay, its heading off by 0 to 180 degrees, wandering
-/// by up to 5 degrees, with noise and stretches lost, begun before or after the scene.
+/// An estimate of a motion. Its clock is `offset` s ahead; it has a delay, a heading error of 0 to 180 degrees, a
+/// drift of up to 5 degrees, noise and lost stretches, and starts before or after the scene.
 fn make(motion: Motion, seed: u64, offset: Option<f64>) -> Made {
     let mut random = random::stream(seed, "clocks");
     let rate = [20.0, 50.0, 100.0, 200.0][random.random_range(0..4)];
@@ -110,7 +110,7 @@ fn make(motion: Motion, seed: u64, offset: Option<f64>) -> Made {
             ]
         })
         .collect();
-    // Four waves of so many normal numbers have this root mean square.
+    // A sum of four waves with normal coefficients has this root mean square.
     let size = wander
         / libm::sqrt(waves.iter().map(|w| (w[2] * w[2] + w[3] * w[3] + w[4] * w[4]) / 2.0).sum::<f64>());
     let drift = |t: f64| -> DVec3 {
@@ -141,7 +141,7 @@ fn make(motion: Motion, seed: u64, offset: Option<f64>) -> Made {
     Made { ahead: offset + delay, series: Series::new(rows), rms_deg: libm::sqrt(square / count) }
 }
 
-/// On the clock that leaves no doubt.
+/// The options for a clock that leaves no doubt.
 fn options() -> Options {
     let until = SimTime((LASTS * 1e9) as i64);
     Options { clock: Clock::Auto, delay: Delay::Keep, until, ..Options::default() }
@@ -151,18 +151,18 @@ fn judged(motion: Motion, series: &Series, options: &Options) -> Result<Judged, 
     judge_series(&|t: SimTime| Some(motion(t.seconds())), series.clone(), &[], options)
 }
 
-/// How an estimate came out.
+/// The result for an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Outcome {
-    /// Its clock is certain, and so much off, s.
+    /// Its clock is certain, with this error, s.
     Certain(f64),
-    /// Its figure is told, its clock is said not to be certain.
+    /// It has a figure, and its clock is marked as uncertain.
     Doubtful,
-    /// It is not known when its attitudes held, and there is no figure.
+    /// The times when its attitudes held are unknown, and it has no figure.
     Unknown,
 }
 
-/// How an estimate came out, or what is wrong.
+/// The result for an estimate, or what is wrong.
 fn outcome(motion: Motion, seed: u64) -> Result<Outcome, String> {
     let made = make(motion, seed, None);
     let figures = match judged(motion, &made.series, &options()) {
@@ -172,14 +172,14 @@ fn outcome(motion: Motion, seed: u64) -> Result<Outcome, String> {
     };
     let (off, sharp) = match (figures.clock_offset_s, figures.fitted) {
         (Some(ahead), _) => (ahead - made.ahead, 0.005),
-        // As a delay it is told with its standard error.
+        // A delay comes with its standard error.
         (None, Some(fitted)) => {
             (fitted.delay_ms * 1e-3 - made.ahead, 4e-3 * fitted.delay_std_ms.unwrap_or(0.0) + 0.005)
         }
         (None, None) => return Ok(Outcome::Doubtful),
     };
     let rms = figures.fitted.map_or(figures.errors.rms_deg, |fitted| fitted.errors.rms_deg);
-    // Right to 5 ms if it is said to be certain; whatever is said, the figure is right.
+    // Within 5 ms if marked as certain; the figure is right in any case.
     let is_right = (rms - made.rms_deg).abs() < (0.05 * made.rms_deg).max(0.03);
     match (!is_right || figures.clock_certain && off.abs() > sharp, figures.clock_certain) {
         (true, _) => Err(format!("{off} s off, {rms} deg RMS for {}, {figures:?}", made.rms_deg)),
@@ -188,7 +188,7 @@ fn outcome(motion: Motion, seed: u64) -> Result<Outcome, String> {
     }
 }
 
-/// The seeds of each motion; `RATETABLE_SEEDS` asks for more.
+/// The number of seeds for each motion; `RATETABLE_SEEDS` raises it.
 fn seeds() -> u64 {
     std::env::var("RATETABLE_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(34)
 }
@@ -226,7 +226,8 @@ fn an_offset_is_right_within_5_ms_or_declared_unknown() {
             "{name}: of {seeds} {certain} certain, {:.2} ms off at most; {unknown} unknown",
             worst * 1e3
         );
-        // A motion that does not repeat nearly always tells enough for a figure; one that does, only with a rest beside.
+        // A motion that does not repeat almost always determines a figure; one that repeats does so only with a
+        // rest beside it.
         let most = if *name == "rocking" { of.len() } else { of.len() / 10 };
         assert!(unknown <= most, "{name}: {unknown} unknown");
         assert!(*name != "rocking" || certain < of.len() / 3, "{name}: {certain} certain");
@@ -254,7 +255,7 @@ fn a_rest_that_is_known_tells_where_a_motion_that_repeats_begins() {
         alone += usize::from(is_certain(&options()));
         rested += usize::from(is_certain(&Options { rest: SimTime(25_000_000_000), ..options() }));
     }
-    // Half of them began before the scene; where it is known that the vehicle rested then, most of those are found.
+    // Half of them started before the scene; if the rest before it is known, most of those are found.
     assert!(rested >= alone + 8, "{rested} beside {alone}");
 }
 
@@ -279,7 +280,7 @@ fn of_another_flight_no_clock_is_told() {
 #[test]
 fn on_the_truths_own_clock_nothing_is_taken_out_and_both_figures_are_told() {
     for (name, motion) in MOTIONS.iter().filter(|(name, _)| *name != "vibration") {
-        // Exact but late by 120 ms, with the truth's own beginning and end.
+        // Exact but late by 120 ms, with the truth's own start and end.
         let rows =
             (0..=4000).map(|k| k as f64 * 0.01).map(|t| ((t * 1e9) as i64, motion((t - 0.12).max(0.0))));
         let series = Series::new(rows);

@@ -1,9 +1,9 @@
-//! How similar two series of angular rates are, at every lag at once.
+//! The similarity of two series of angular rates, at all lags at once.
 //!
-//! At the lag `l`, `aᵢ` of the one stands beside `bᵢ₊ₗ` of the other. Of the two's sums of squares `A` and `B` and the
-//! matrix `C = Σ aᵢ bᵢ₊ₗᵀ`, all over what both know, `A + B − 2·tr C` is what they differ by; turned by the rotation that
-//! brings the one nearest to the other ([`Products::best_turn`]) the trace is larger. The sums come from Fourier
-//! transforms, so that all lags of an hour cost about a second.
+//! At the lag `l`, `aᵢ` of one series meets `bᵢ₊ₗ` of the other. With their sums of squares `A` and `B` and the
+//! matrix `C = Σ aᵢ bᵢ₊ₗᵀ`, all over cells known in both, they differ by `A + B − 2·tr C`. After the rotation that
+//! brings them closest ([`Products::best_turn`]) the trace is larger. Fourier transforms give the sums, so that all
+//! lags of an hour take about a second.
 
 use super::rates::Rates;
 use super::turn::Products;
@@ -14,40 +14,41 @@ use std::sync::Arc;
 
 /// The sums at every lag.
 pub(super) struct Sums {
-    /// How much the second's cell is ahead at the first lag.
+    /// By how many cells the second is ahead at the first lag.
     first: i64,
-    /// Pairs of cells that both know.
+    /// Pairs of cells known in both.
     count: Vec<f64>,
     squares: [Vec<f64>; 2],
     products: [Vec<f64>; 9],
 }
 
-/// What two rows of rates have in common at one lag.
+/// The agreement of two series of rates at one lag.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Alike {
-    /// In how many cells both are known.
+    /// The number of cells known in both.
     pub cells: f64,
     /// Mean squares of the two, (rad/s)².
     pub squares: [f64; 2],
-    /// The mean square of what they differ by, (rad/s)².
+    /// The mean square of their difference, (rad/s)².
     pub apart: f64,
 }
 
-/// Sizes of rates below this say nothing, rad/s.
+/// Rates smaller than this contain no information, rad/s.
 const FLOOR: f64 = 0.003;
 
 impl Alike {
-    /// What the one tells of the other, in nats: `n/2·ln(B/(A + B − 2·C))` of `n` cells, both with the floor.
+    /// The information of one about the other, in nats: `n/2·ln(B/(A + B − 2·C))` of `n` cells, both with the
+    /// floor.
     pub fn information(&self) -> f64 {
         0.5 * self.cells * libm::log(self.floored(self.squares[1]) / self.floored(self.apart))
     }
 
-    /// The share of both's squares that they have in common, at most 1.
+    /// The share of the squares of both that they have in common, at most 1.
     pub fn share(&self) -> f64 {
         1.0 - self.apart / self.squares[0].min(self.squares[1]).max(f64::MIN_POSITIVE)
     }
 
-    /// How many times further apart this is than the other.
+    /// By what factor the difference is larger than the other's.
     pub fn worse_than(&self, other: &Alike) -> f64 {
         self.floored(self.apart) / self.floored(other.apart)
     }
@@ -58,7 +59,7 @@ impl Alike {
 }
 
 impl Sums {
-    /// Of two rows of rates with the same step.
+    /// The sums of two series of rates with the same step.
     pub fn new(a: &Rates, b: &Rates) -> Sums {
         let (n, m) = (a.values.len(), b.values.len());
         let fourier = Transform::new(n + m);
@@ -81,17 +82,17 @@ impl Sums {
         }
     }
 
-    /// How many lags there are.
+    /// The number of lags.
     pub fn len(&self) -> usize {
         self.count.len()
     }
 
-    /// By how many cells the second is ahead at a lag's number.
+    /// By how many cells the second is ahead at lag number `i`.
     pub fn ahead(&self, i: usize) -> i64 {
         self.first + i as i64
     }
 
-    /// What they have in common at a lag's number; `free` lets the second's body axes be turned.
+    /// The agreement at lag number `i`; `free` allows a rotation of the second's body axes.
     pub fn at(&self, i: usize, free: bool) -> Alike {
         let cells = libm::round(self.count[i]).max(0.0);
         let per = 1.0 / cells.max(1.0);
@@ -110,7 +111,7 @@ struct Transform {
 }
 
 impl Transform {
-    /// Of the next power of two.
+    /// A transform of the next power of two.
     fn new(least: usize) -> Transform {
         let length = least.next_power_of_two();
         let mut planner = FftPlanner::new();
@@ -128,7 +129,7 @@ impl Transform {
         buffer
     }
 
-    /// `Σ xᵢ yᵢ₊ₗ` at so many lags from `−back` on.
+    /// `Σ xᵢ yᵢ₊ₗ` at `lags` lags from `−back` on.
     fn correlation(&self, x: &[Complex64], y: &[Complex64], lags: usize, back: usize) -> Vec<f64> {
         let mut product: Vec<_> = x.iter().zip(y).map(|(x, y)| x.conj() * y).collect();
         self.inverse.process(&mut product);
@@ -142,7 +143,7 @@ mod tests {
     use super::*;
     use crate::geometry::{exp, rotate};
 
-    /// Rates that never repeat, of which some are not known.
+    /// Rates that never repeat, with some unknown.
     fn rates(first: i64, values: impl Fn(f64) -> DVec3, count: usize) -> Rates {
         let at = |i: usize| values((first + i as i64) as f64 * 0.02);
         Rates {

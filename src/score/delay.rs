@@ -1,15 +1,17 @@
-//! How much later than the truth an estimate is, to a microsecond and with its standard error, from the motion itself.
+//! How much later than the truth an estimate is, to a microsecond and with its standard error, from the motion
+//! itself.
 //!
-//! Against the truth `d` earlier, estimate `i` has the error `e_i(d) = q_i ⊗ q_truth(t_i − d)*` in nav axes. Whatever
-//! constant turn of the nav axes it has, two errors a span apart are alike at the right delay: it is the `d` that
-//! minimises the mean of `|log(e_j ⊗ e_i*)|²` over pairs of estimates. A long span averages the noise of an
-//! estimate out, a short one leaves its wander out; of several the one with the least standard error is taken.
+//! Against the truth `d` earlier, estimate `i` has the error `e_i(d) = q_i ⊗ q_truth(t_i − d)*` in nav axes. At the
+//! right delay two errors a span apart are equal, whatever constant turn of the nav axes they contain. The delay is
+//! therefore the `d` that minimises the mean of `|log(e_j ⊗ e_i*)|²` over pairs of estimates. A long span averages
+//! the noise of an estimate out, a short one excludes its drift; of several spans the one with the smallest
+//! standard error is used.
 //!
-//! Where the body's axes are turned as well, rates are compared instead: `r_i = log(q_i* ⊗ q_j)` of estimate and truth,
-//! the one turned by the rotation that brings them together ([`Products::best_turn`]).
+//! If the body's axes are rotated as well, rates are compared instead: `r_i = log(q_i* ⊗ q_j)` of estimate and
+//! truth, one of them rotated to match the other ([`Products::best_turn`]).
 //!
-//! Near the minimum a residual is `r_i ≈ g_i·d`, so the standard error is `√Σ_b (Σ_{i∈b} g_i·r_i)² / Σ|g_i|²` with the
-//! pairs in blocks `b` of five seconds or more, within which residuals are not independent (H. White, *A
+//! Near the minimum a residual is `r_i ≈ g_i·d`, so the standard error is `√Σ_b (Σ_{i∈b} g_i·r_i)² / Σ|g_i|²` with
+//! the pairs in blocks `b` of five seconds or more, within which residuals are not independent (H. White, *A
 //! heteroskedasticity-consistent covariance matrix estimator*, Econometrica 48(4), 1980).
 
 use super::sampled::Sampled;
@@ -19,40 +21,40 @@ use crate::geometry::{log, rotate};
 use glam::{DQuat, DVec3};
 use std::ops::Range;
 
-/// The truth at a time in ns, where it is known.
+/// The truth at a time in ns, if known.
 pub(super) type At<'a> = &'a dyn Fn(i64) -> Option<DQuat>;
 
-/// Between the two estimates of a pair, ns.
+/// The spans between the two estimates of a pair, ns.
 const SPANS: [i64; 4] = [100_000_000, 300_000_000, 1_000_000_000, 3_000_000_000];
-/// Compared as rates, a span turns by no more than this, rad.
+/// In a comparison of rates, the most that the body may turn in a span, rad.
 const LEAST_TURN: f64 = 1.0;
-/// Where a search ends, ns.
+/// The precision at which a search ends, ns.
 const FINE: i64 = 1000;
-/// The step over which the motion's change is taken, ns.
+/// The step for the motion's rate of change, ns.
 const SLOPE: i64 = 2_000_000;
-/// Residuals beyond so many times what nine of ten keep to count as if they were there: a heading that jumps, a reset.
+/// Residuals are clipped at this many times the value that nine of ten stay below: a heading that jumps, a reset.
 const BEYOND: f64 = 3.0;
-/// A motion whose rate changes by less than this says nothing of time, rad/s².
+/// A motion whose rate changes by less than this contains no information about time, rad/s².
 const LEAST_CHANGE: f64 = 0.003;
-/// Within so many ns residuals are not independent: an estimate wanders over seconds.
+/// Residuals within this many ns are not independent: an estimate drifts over seconds.
 const BLOCK: i64 = 5_000_000_000;
-/// Of so many blocks the standard error is taken twice.
+/// With this many blocks the standard error is doubled; with more it is enlarged less.
 const FEW_BLOCKS: f64 = 3.0;
-/// A delay whose standard error is above this is not told, ns.
+/// A delay with a standard error above this is not reported, ns.
 const WORST: f64 = 20e6;
-/// Of what the estimate turns, the share that the truth has to explain.
+/// The share of the estimate's turning that the truth must explain.
 const LEAST_SHARE: f64 = 0.3;
 
-/// The delay that was found.
+/// A delay found by the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fit {
     /// ns; positive where the estimate is late.
     pub delay: i64,
     /// Its standard error, ns.
     pub error: f64,
-    /// How far away the furthest delay is that is about as likely, ns: vibration has one a period away.
+    /// The distance of the furthest delay that is about as likely, ns: with vibration there is one a period away.
     pub rival: f64,
-    /// Why it should not be believed.
+    /// A reason not to trust it.
     pub doubt: Option<&'static str>,
 }
 
@@ -62,11 +64,11 @@ impl Fit {
         (3.0 * self.error).max(self.rival)
     }
 
-    /// None, known without looking.
+    /// No delay, known without a search.
     pub const EXACT: Fit = Fit { delay: 0, error: 0.0, rival: 0.0, doubt: None };
 }
 
-/// Why no delay follows from a motion.
+/// Why a motion determines no delay.
 pub(super) const TOO_EVEN: &str = "the motion is too even to separate a delay from a constant error";
 const TOO_LOOSE: &str = "the estimate follows the motion too loosely to find a delay";
 const ALIKE: &str = "several delays fit equally well, such as those one vibration period apart";
@@ -77,12 +79,12 @@ pub(super) struct Pairs {
     /// ns.
     span: i64,
     pairs: Vec<[(i64, DQuat); 2]>,
-    /// Whether the body's axes may be turned.
+    /// Whether the body's axes may be rotated.
     free: bool,
 }
 
 impl Pairs {
-    /// About `count` pairs about `span` ns apart.
+    /// About `count` pairs, about `span` ns apart.
     fn new(series: &Series, span: i64, free: bool, count: usize) -> Pairs {
         let times = series.times();
         let row = |i: usize| (times[i], series.attitude(i).q);
@@ -97,7 +99,7 @@ impl Pairs {
             if other == times.len() {
                 break;
             }
-            // Rows further apart than the span have it for themselves; a gap has nothing.
+            // Rows further apart than the span are paired directly; a gap has no pair.
             let apart = times[other] - times[i];
             if apart > 0 && (apart <= 2 * span || other == i + 1) {
                 pairs.push([row(i), row(other)]);
@@ -106,13 +108,13 @@ impl Pairs {
         Pairs { span, pairs, free }
     }
 
-    /// Both truths of each pair, had the estimates come `delay` late.
+    /// Both truths of each pair for an estimate that is `delay` late.
     fn truths(&self, truth: At<'_>, delay: i64) -> Vec<Option<[DQuat; 2]>> {
         let at = |t: i64| truth(t.saturating_sub(delay));
         self.pairs.iter().map(|[(a, _), (b, _)]| Some([at(*a)?, at(*b)?])).collect()
     }
 
-    /// What each pair differs by, rad/s, where there is a truth.
+    /// The difference of each pair, rad/s, where the truth is known.
     fn residuals(&self, truth: At<'_>, delay: i64) -> Vec<Option<DVec3>> {
         let truths = self.truths(truth, delay);
         let seconds = |[(a, _), (b, _)]: &[(i64, DQuat); 2]| (b - a) as f64 * 1e-9;
@@ -140,8 +142,7 @@ impl Pairs {
         rates.iter().map(|rates| rates.map(|[truth, estimate]| rotate(turn, estimate) - truth)).collect()
     }
 
-    /// The mean square of the residuals, those beyond `cap` as if they were there; `None` where fewer than half of
-    /// `most` pairs have a truth.
+    /// The mean square of the residuals, clipped at `cap`; `None` if fewer than half of `most` pairs have a truth.
     fn cost(&self, truth: At<'_>, delay: i64, cap: f64, most: usize) -> Option<f64> {
         let residuals = self.residuals(truth, delay);
         let (mut sum, mut count) = (0.0, 0);
@@ -152,19 +153,20 @@ impl Pairs {
         (count >= 2 && 2 * count >= most).then(|| sum / count as f64)
     }
 
-    /// How many pairs have a truth.
+    /// The number of pairs with a truth.
     fn count(&self, truth: At<'_>, delay: i64) -> usize {
         self.truths(truth, delay).iter().flatten().count()
     }
 
-    /// Where residuals end to count in a window, by those at its ends: within it, what only tells that the delay is
-    /// another counts in full.
+    /// The clipping limit for a window, from the residuals at its ends: within the window, a residual that only
+    /// shows a different delay counts in full.
     fn cap(&self, truth: At<'_>, window: &Range<i64>) -> f64 {
         let ends = [window.start, window.end].map(|delay| self.most(truth, delay));
         ends[0].max(ends[1])
     }
 
-    /// The size of a residual beyond which it is a jump, rad/s: so many times what nine of ten keep to.
+    /// The size of a residual beyond which it is a jump, rad/s: a multiple of the value that nine of ten stay
+    /// below.
     fn most(&self, truth: At<'_>, delay: i64) -> f64 {
         let mut sizes: Vec<f64> = self.residuals(truth, delay).iter().flatten().map(|r| r.length()).collect();
         let ninth = sizes.len() * 9 / 10;
@@ -174,14 +176,14 @@ impl Pairs {
         BEYOND * *sizes.select_nth_unstable_by(ninth, f64::total_cmp).1 + 1e-6
     }
 
-    /// The least cost within a window, to a microsecond, by golden sections.
+    /// The minimum of the cost within a window, to a microsecond, by golden sections.
     fn refine(&self, truth: At<'_>, window: Range<i64>) -> i64 {
         let cap = self.cap(truth, &window);
         let most = self.count(truth, i64::midpoint(window.start, window.end));
         golden(window, |delay| self.cost(truth, delay, cap, most).unwrap_or(f64::INFINITY))
     }
 
-    /// The standard error of a delay, ns, and why it should not be believed.
+    /// The standard error of a delay, ns, and a reason not to trust it.
     fn told(&self, truth: At<'_>, delay: i64) -> (f64, Option<&'static str>) {
         let cap = self.most(truth, delay);
         let [here, before, after] =
@@ -199,7 +201,7 @@ impl Pairs {
     }
 }
 
-/// The sums that the standard error comes from.
+/// The sums for the standard error.
 struct Slopes {
     block: i64,
     number: i64,
@@ -219,7 +221,8 @@ impl Slopes {
         Slopes { block, number: i64::MIN, current, weight, blocks, weights, slopes, residuals, turned, count }
     }
 
-    /// A pair from `t` on: what it differs by, how that changes with the delay, and what the estimate turned.
+    /// Adds a pair that starts at `t`: its difference, the change of that with the delay, and the turn of the
+    /// estimate.
     fn add(&mut self, t: i64, r: DVec3, slope: DVec3, turned: DVec3) {
         let number = t.div_euclid(self.block);
         if number != self.number {
@@ -240,7 +243,7 @@ impl Slopes {
             return (f64::INFINITY, Some(TOO_EVEN));
         }
         let error = libm::sqrt(self.blocks + self.current * self.current) / self.slopes * 1e9;
-        // A motion that is all in a few blocks tells little of how residuals scatter.
+        // A motion within a few blocks shows little of how residuals scatter.
         let blocks = self.slopes * self.slopes / (self.weights + self.weight * self.weight);
         let error = error * (1.0 + FEW_BLOCKS / blocks);
         let loose = error > WORST || self.residuals > (1.0 - LEAST_SHARE) * self.turned;
@@ -248,7 +251,7 @@ impl Slopes {
     }
 }
 
-/// The least of a function with one dip in a window, to a microsecond.
+/// The minimum of a function with one dip in a window, to a microsecond.
 fn golden(window: Range<i64>, cost: impl Fn(i64) -> f64) -> i64 {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     let (mut low, mut high) = (window.start, window.end);
@@ -269,10 +272,10 @@ fn golden(window: Range<i64>, cost: impl Fn(i64) -> f64) -> i64 {
     i64::midpoint(low, high)
 }
 
-/// The delay within a window (ns): with the span that makes it most certain.
+/// The delay within a window (ns), for the span that makes it most certain.
 ///
-/// Every `step` ns is looked at first: where other dips are nearly as deep, as vibration has them a period apart, the
-/// delay is no more certain than they are near.
+/// A first search goes in steps of `step` ns. If other dips are nearly as deep, as with vibration a period apart,
+/// the uncertainty extends to them.
 pub(super) fn near(
     grid: &Sampled,
     exact: At<'_>,
@@ -311,26 +314,26 @@ pub(super) fn near(
     let pairs = Pairs::new(series, span, free, MANY);
     let mut fit = Fit { rival: fit.rival, ..found(&pairs, fit.delay - step..fit.delay + step) };
     if fit.doubt.is_none() {
-        // The grid's chords are right to microseconds; the truth itself is exact.
+        // The grid's chords are accurate to microseconds; the truth itself is exact.
         fit.delay = pairs.refine(exact, fit.delay - step / 16..fit.delay + step / 16);
         fit.doubt = (fit.rival > WORST).then_some(ALIKE);
     }
     fit
 }
 
-/// As many pairs tell which span is best, and as many the delay.
+/// The number of pairs that determine the best span, and the number that determine the delay.
 const FEW: usize = 400;
 const MANY: usize = 1500;
-/// Another dip counts if it is less than so many times as deep.
+/// Another dip counts if its cost is less than this many times that of the deepest.
 const RIVAL: f64 = 2.0;
-/// As many dips are looked into.
+/// The number of dips examined.
 const DIPS: usize = 16;
-/// A residual that is nothing, rad/s.
+/// A negligible residual, rad/s.
 const NOTHING: f64 = 1e-4;
 
 impl Pairs {
-    /// The deepest dip within a window, and how far away the furthest that is nearly as deep is, ns. Dips are found every
-    /// `step` ns and each looked into: between two looks a narrow one may hide its depth.
+    /// The deepest dip within a window, and the distance of the furthest one that is nearly as deep, ns. The search
+    /// finds dips in steps of `step` ns and examines each: between two steps a narrow dip may hide its depth.
     fn deepest(&self, truth: At<'_>, window: &Range<i64>, step: i64) -> Option<(i64, f64)> {
         let delays: Vec<i64> =
             (0..=(window.end - window.start) / step).map(|i| window.start + i * step).collect();
@@ -357,7 +360,8 @@ impl Pairs {
     }
 }
 
-/// The mean square of what estimate and truth differ by over the shortest span, at the best delay near one, (rad/s)².
+/// The mean square of the difference between estimate and truth over the shortest span, at the best delay in a
+/// window, (rad/s)².
 pub(super) fn apart(grid: &Sampled, series: &Series, window: &Range<i64>, step: i64, free: bool) -> f64 {
     let on_grid: At<'_> = &|t| grid.at(t);
     let pairs = Pairs::new(series, limited(grid, SPANS[0], free), free, FEW);
@@ -367,14 +371,14 @@ pub(super) fn apart(grid: &Sampled, series: &Series, window: &Range<i64>, step: 
     pairs.cost(on_grid, delay, cap, 0).unwrap_or(f64::INFINITY)
 }
 
-/// A span over which rates can be compared.
+/// The longest span, up to `span`, over which rates can be compared.
 fn limited(grid: &Sampled, span: i64, free: bool) -> i64 {
     let least = (LEAST_TURN / grid.fastest().max(1e-3) * 1e9) as i64;
     if free { span.min(least) } else { span }
 }
 
-/// The delay within `window` (ns), looked for every `step` ns on the grid and then between: of dips that are as
-/// deep, as a motion that repeats has them, the one nearest to none.
+/// The delay within `window` (ns), searched in steps of `step` ns on the grid and then between. Of equally deep
+/// dips, as in a motion that repeats, it takes the one closest to zero.
 pub(super) fn within(
     grid: &Sampled,
     exact: At<'_>,
@@ -392,7 +396,7 @@ pub(super) fn within(
     let best = least(&delays, &costs)?;
     let mut fit = near(grid, exact, series, &(delays[best] - step..delays[best] + step), step, false);
     if fit.spread() > step as f64 {
-        // What wanders moves the dip of one span by more than a step.
+        // Drift moves the dip of a single span by more than a step.
         fit = near(grid, exact, series, &(delays[best] - 20 * step..delays[best] + 20 * step), step, false);
     }
     if best == 0 || best + 1 == delays.len() {
@@ -401,7 +405,7 @@ pub(super) fn within(
     Some(fit)
 }
 
-/// Of the dips that are as deep as the deepest, the one nearest to no delay.
+/// Of the dips as deep as the deepest, the one closest to zero delay.
 fn least(delays: &[i64], costs: &[f64]) -> Option<usize> {
     let finite = || costs.iter().copied().filter(|cost| cost.is_finite());
     let (lowest, highest) = (finite().reduce(f64::min)?, finite().reduce(f64::max)?);

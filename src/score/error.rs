@@ -5,21 +5,21 @@ use std::f64::consts::{PI, TAU};
 
 /// One estimate's error, rad.
 ///
-/// Laidig & Seel, *VQF*, Information Fusion 91, 2023: *inclination* is the part that gravity shows, *heading* the turn
-/// about the vertical that is left. With `e = q_estimate ⊗ q_truth*` in nav axes, heading is `2·atan2(e_z, e_w)` and
-/// inclination `2·atan2(√(e_x² + e_y²), √(e_w² + e_z²))`.
+/// Laidig & Seel, *VQF*, Information Fusion 91, 2023: *inclination* is the part that gravity shows, *heading* the
+/// remaining turn about the vertical. With `e = q_estimate ⊗ q_truth*` in nav axes, heading is `2·atan2(e_z, e_w)`
+/// and inclination `2·atan2(√(e_x² + e_y²), √(e_w² + e_z²))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttitudeError {
-    /// The whole rotation, in [0, π].
+    /// The total rotation, in [0, π].
     pub total: f64,
     /// The part that tilts, in [0, π].
     pub inclination: f64,
-    /// The part about the vertical, in [−π, π], positive where the estimate is turned too far clockwise.
+    /// The part about the vertical, in [−π, π], positive where the estimate is too far clockwise.
     pub heading: f64,
 }
 
 impl AttitudeError {
-    /// Of an estimate against the truth at the same time.
+    /// The error of an estimate against the truth at the same time.
     pub fn between(truth: Attitude, estimate: Attitude) -> AttitudeError {
         let e = estimate.q * truth.q.conjugate();
         let heading = 2.0 * libm::atan2(e.z, e.w);

@@ -3,17 +3,17 @@
 use super::AttitudeError;
 use serde::Serialize;
 
-/// How the delay is known.
+/// How the delay was determined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayKnown {
-    /// The time of the sample was echoed.
+    /// From the echo of a sample's time.
     Echoed,
-    /// By where the motion agrees best.
+    /// From the best agreement of the motion.
     Estimated,
-    /// It was given.
+    /// Given by the user.
     Given,
-    /// It is not.
+    /// It was not.
     #[default]
     Unknown,
 }
@@ -21,9 +21,9 @@ pub enum DelayKnown {
 /// Errors of a series of estimates, degrees: root mean squares and the largest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
-    /// Root mean square of the whole error.
+    /// Root mean square of the total error.
     pub rms_deg: f64,
-    /// The largest whole error.
+    /// The largest total error.
     pub max_deg: f64,
     /// Root mean square of the tilt.
     pub inclination_rms_deg: f64,
@@ -33,7 +33,7 @@ pub struct Errors {
     pub heading_rms_deg: f64,
     /// The largest turn about the vertical.
     pub heading_max_deg: f64,
-    /// Root mean square of the difference of the Euler angles roll, in the estimate's own axes.
+    /// Root mean square of the difference in roll (Euler angles in the estimate's own axes).
     pub roll_rms_deg: f64,
     /// The largest difference of roll.
     pub roll_max_deg: f64,
@@ -47,20 +47,20 @@ pub struct Errors {
     pub yaw_max_deg: f64,
 }
 
-/// Errors with a delay taken out.
+/// Errors after a delay is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fitted {
     /// The delay, ms; positive where the estimate is late.
     pub delay_ms: f64,
-    /// Its standard error, ms, where it was found and not given.
+    /// Its standard error, ms, if it was found and not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delay_std_ms: Option<f64>,
-    /// What is left.
+    /// The remaining errors.
     #[serde(flatten)]
     pub errors: Errors,
 }
 
-/// The constant rotations that were taken out, degrees.
+/// The constant rotations that were removed, degrees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Aligned {
     /// Of the nav axes ("the world").
@@ -71,54 +71,54 @@ pub struct Aligned {
     pub heading_deg: f64,
 }
 
-/// What a series of estimates amounts to.
+/// The summary of a series of estimates.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Figures {
-    /// How many estimates were judged.
+    /// The number of judged estimates.
     pub samples: u64,
-    /// Errors at the times at which the estimates held: on the truth's own clock as given, with whatever delay they
-    /// have, unless their own stamps or an echo tell it; on another clock with its offset taken out.
+    /// Errors at the times when the estimates held. On the truth's own clock the times are as given, and any delay
+    /// stays in unless stamps or an echo show it; on another clock its offset is removed.
     #[serde(flatten)]
     pub errors: Errors,
-    /// Errors with the delay taken out, where the estimates are judged as given and it could be found.
+    /// Errors with the delay removed, if the estimates are judged as given and a delay was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fitted: Option<Fitted>,
-    /// Errors as the estimates arrived, where a delay was taken out of those above.
+    /// Errors as the estimates arrived, if a delay was removed from those above.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub as_arrived: Option<Errors>,
-    /// How much later than it held an estimate came, the median where it is known of each.
+    /// How much later than it held an estimate arrived; the median if known for each.
     pub delay_ms: Option<f64>,
-    /// How it is known.
+    /// How the delay was determined.
     pub delay_known: DelayKnown,
-    /// Why it is not.
+    /// Why it was not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delay_doubt: Option<&'static str>,
-    /// How much the estimates' own clock is ahead of the truth's, delay included, where it is another.
+    /// How far the estimates' own clock is ahead of the truth's, delay included, if it is a different one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clock_offset_s: Option<f64>,
-    /// The standard error of that, ms.
+    /// The standard error of the offset, ms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clock_std_ms: Option<f64>,
     /// Whether the estimates' clock is known without doubt.
     pub clock_certain: bool,
-    /// Which part of the truth's time the estimates cover, from 0 to 1; gaps do not count.
+    /// The share of the truth's time that the estimates cover, from 0 to 1; gaps do not count.
     pub coverage: f64,
-    /// The constant rotations that were taken out.
+    /// The constant rotations that were removed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aligned: Option<Aligned>,
-    /// The constant heading that was taken out, where that alone was asked for: that of [`Figures::aligned`].
+    /// The constant heading that was removed, if only that was requested: the one in [`Figures::aligned`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heading_offset_deg: Option<f64>,
     /// The mistake that explains a large error: `NED/ENU swapped`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub looks: Option<String>,
-    /// What the root mean square would be without it.
+    /// The root mean square without this mistake.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub looks_rms_deg: Option<f64>,
 }
 
 impl Figures {
-    /// With every field that there can be, all of them 0: what a limit may name.
+    /// Figures with every possible field, all 0: what a limit may name.
     pub fn shape() -> Figures {
         Figures {
             fitted: Some(Fitted { delay_ms: 0.0, delay_std_ms: Some(0.0), errors: Errors::default() }),
@@ -134,7 +134,7 @@ impl Figures {
     }
 }
 
-/// The sums that errors come from.
+/// The sums behind the errors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     pub count: u64,
@@ -143,7 +143,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Takes one error in, rad: of the whole and of roll, pitch and yaw.
+    /// Adds one error, rad: the total one and those of roll, pitch and yaw.
     pub fn add(&mut self, error: &AttitudeError, angles: [f64; 3]) {
         let [roll, pitch, yaw] = angles;
         self.count += 1;
@@ -155,7 +155,7 @@ impl Tally {
         }
     }
 
-    /// What they amount to.
+    /// The errors from the sums.
     pub fn errors(&self) -> Errors {
         let rms = |i: usize| libm::sqrt(self.squares[i] / self.count.max(1) as f64).to_degrees();
         let max = |i: usize| self.most[i].to_degrees();

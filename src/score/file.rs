@@ -12,39 +12,39 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
-/// How a file is read.
+/// Options for reading a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// The axes in which a table or a trajectory is written.
+    /// The axes of a table or a trajectory.
     pub axes: Axes,
-    /// The columns of tables whose own names say nothing, or that have columns of these names.
+    /// The columns, for tables whose names do not identify them or that have columns with these names.
     pub columns: Choice,
 }
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recorded {
     /// Its attitudes, body to nav, in the order of the file.
     pub attitudes: Vec<Packed>,
-    /// Their times, in order but for the breaks; the unit where the file says it.
+    /// Their times, in order except at the breaks, and the unit if the file gives it.
     pub times: Times,
-    /// What messages call the times: the name of the column.
+    /// The name of the time column in messages.
     pub time_name: String,
-    /// The axes in which it is written.
+    /// Its axes.
     pub axes: Axes,
-    /// Other ways to read the same columns, each with what it would mean.
+    /// Other ways to read the same columns, each with its meaning.
     pub others: Vec<(&'static str, Vec<Packed>)>,
-    /// What the user should know of how it was read.
+    /// What the user should know about how it was read.
     pub remarks: Vec<String>,
-    /// How many rows there were, and how many are left out.
+    /// The number of rows, and of those left out.
     pub rows: Rows,
 }
 
-/// Why a file could not be read.
+/// Why a file was not read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// The system refused.
+    /// The system failed to read it.
     #[error("cannot read {}: {source}", path.display())]
     Io {
         /// The file.
@@ -52,7 +52,7 @@ pub enum FileError {
         /// The system's reason.
         source: io::Error,
     },
-    /// It is there but cannot be understood: every mistake, a line each.
+    /// The file exists but is invalid: every mistake, one line each.
     #[error("{0}")]
     Content(String),
 }
@@ -63,27 +63,27 @@ impl From<TableError> for FileError {
     }
 }
 
-/// Who does not read a file of another kind, and what it reads.
+/// The command that rejects a file of another kind, and what it reads.
 const READER: &str = "`score` does not read: it reads tables with a header, TUM trajectories and PX4 ULogs";
-/// As many first bytes tell what a file is.
+/// The number of first bytes that identify a file.
 const HEAD: u64 = 4096;
-/// How every ULog begins.
+/// The first bytes of every ULog.
 const ULOG: &[u8] = b"ULog\x01\x12\x35";
 
-/// Reads estimates. A table or a trajectory is in `axes`; a ULog says of itself that it is in NED-FRD.
+/// Reads estimates. A table or a trajectory is in `axes`; a ULog states that it is in NED-FRD.
 ///
 /// # Errors
-/// As of [`read_as`].
+/// Those of [`read_as`].
 pub fn read(path: &Path, axes: Axes) -> Result<Recorded, FileError> {
     read_as(path, &Reading { axes, ..Reading::default() })
 }
 
-/// Reads estimates. Rows without an attitude, and those out of order, are left out, counted in [`Recorded::rows`] and
-/// told in [`Recorded::remarks`].
+/// Reads estimates. It leaves out rows without an attitude and rows out of order, counts them in [`Recorded::rows`]
+/// and mentions them in [`Recorded::remarks`].
 ///
 /// # Errors
-/// No such file; one of another kind; no columns of time and attitude; words where numbers should be, quaternions that
-/// are no rotations; not a row that can be used.
+/// There is no such file, or it is of another kind; it has no columns of time and attitude; it has words instead of
+/// numbers, or quaternions that are no rotations; no row is usable.
 pub fn read_as(path: &Path, reading: &Reading) -> Result<Recorded, FileError> {
     let refused = |source| FileError::Io { path: path.to_path_buf(), source };
     let name = path.display().to_string();
@@ -107,7 +107,7 @@ pub fn read_as(path: &Path, reading: &Reading) -> Result<Recorded, FileError> {
             "{name} is neither text nor a ULog: an estimate is a table with a header, a TUM trajectory or a ULog"
         )));
     }
-    // What is no plain file cannot be begun anew; its beginning is at hand.
+    // A file that cannot rewind, such as a pipe, uses its buffered start.
     match file.rewind() {
         Ok(()) => table::read(&name, BufReader::with_capacity(1 << 18, file), reading),
         Err(_) => table::read(&name, BufReader::new(io::Cursor::new(head).chain(file)), reading),

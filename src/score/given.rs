@@ -1,83 +1,82 @@
-//! What a score is given: estimates, the truth, and how to judge; and one row of what it gives back.
+//! Inputs of a score (estimates, truth and options), and one row of its output.
 
 use super::AttitudeError;
 use super::align::Align;
 use crate::geometry::{Attitude, Axes};
 use crate::time::SimTime;
 
-/// The truth as a function of time; `None` where it is not known.
+/// The truth as a function of time; `None` where it is unknown.
 pub type Truth<'a> = &'a dyn Fn(SimTime) -> Option<Attitude>;
 
 /// What is known of the time at which an estimate held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum HeldAt {
-    /// The scene's time of the newest sample it rests on, as echoed: exact.
+    /// The scene time of its newest sample, as echoed: exact.
     Sample(SimTime),
-    /// Time of the other side's own clock, ns since whenever.
+    /// Time of the other side's own clock, ns since an unknown epoch.
     Own(i64),
-    /// Nothing but its arrival.
+    /// Only its arrival time.
     Arrival,
 }
 
 /// An estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed {
-    /// When it arrived, in scene time; of an estimate in a file, the time that stands beside it.
+    /// Its arrival in scene time; for an estimate in a file, its recorded time.
     pub arrival: SimTime,
-    /// When it held, as far as it says.
+    /// When it held, as far as known.
     pub stamp: HeldAt,
-    /// What it says: body to nav, of about unit length.
+    /// Its attitude: body to nav, of about unit length.
     pub attitude: Attitude,
 }
 
 /// How to treat a delay on the truth's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Delay {
-    /// It is taken out where it can be found; what the estimates are as they arrived is told beside.
+    /// Remove it if it is found; also report the errors as the estimates arrived.
     #[default]
     TakeOut,
-    /// It is left in; what they are without it is told beside.
+    /// Keep it; also report the errors without it.
     Keep,
-    /// As [`Delay::Keep`], and rows and charts are without it: where it cannot be found nothing is judged.
+    /// Like [`Delay::Keep`], but rows and charts are without the delay: if it is not found, nothing is judged.
     Fit,
-    /// As [`Delay::Fit`], and it is so many ns.
+    /// Like [`Delay::Fit`], with this delay in ns.
     Given(i64),
 }
 
-/// What clock the times of estimates are of.
+/// The clock of the times of estimates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
-    /// The truth's: an estimate is late by its delay, from half a second early to two seconds late.
+    /// The truth's clock; an estimate is late by its delay, from half a second early to two seconds late.
     #[default]
     Truth,
-    /// The truth's, exactly: each time is that of the newest sample an estimate rests on.
+    /// The truth's clock, exactly: each time is that of the estimate's newest sample.
     Sample,
-    /// One of which nothing is known, such as a log's since some boot. [`Options::until`](super::Options) has to be
-    /// finite.
+    /// An unknown clock, such as a log's time since some boot. [`Options::until`](super::Options) must be finite.
     Other,
-    /// The one of the two that the motion, or the times themselves, leave no doubt about.
+    /// Whichever of the two the motion, or the times themselves, show without doubt.
     Auto,
 }
 
 /// How to judge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// What is taken out.
+    /// The rotations to remove.
     pub align: Align,
-    /// Which clock.
+    /// The clock of the estimates.
     pub clock: Clock,
     /// How to treat a delay.
     pub delay: Delay,
-    /// From when on the truth is known.
+    /// Start of the known truth.
     pub from: SimTime,
-    /// Until when.
+    /// End of the known truth.
     pub until: SimTime,
-    /// For how long before that the vehicle was held still as it is then.
+    /// How long before `from` the vehicle was held still in its initial attitude.
     pub rest: SimTime,
-    /// For how long from `from` on estimates do not count.
+    /// How long after `from` estimates do not count.
     pub settle: SimTime,
-    /// The axes in which the estimates were written before they were read, and in which mistakes were made.
+    /// The original axes of the estimates, in which mistakes were made.
     pub axes: Axes,
 }
 
@@ -96,15 +95,15 @@ impl Default for Options {
     }
 }
 
-/// One estimate that was judged.
+/// One judged estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// When it held, in scene time.
     pub t: SimTime,
-    /// What it said, less what was taken out.
+    /// Its attitude, without the removed rotations.
     pub attitude: Attitude,
-    /// The truth then.
+    /// The truth at that time.
     pub truth: Attitude,
-    /// How far the one is from the other.
+    /// The difference between the two.
     pub error: AttitudeError,
 }

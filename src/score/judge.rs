@@ -1,4 +1,4 @@
-//! A whole series of estimates against the truth.
+//! Judges a whole series of estimates against the truth.
 
 use super::Aligned;
 use super::align::{Align, Frames};
@@ -16,24 +16,24 @@ use glam::DQuat;
 /// Why estimates cannot be judged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unjudged {
-    /// None of them is at a time at which the truth is known and estimates count.
+    /// None of them has a time at which the truth is known and estimates count.
     #[error("no estimate is at a time that the truth covers")]
     NoTruth,
-    /// It is not known when they held.
+    /// The times at which they held are unknown.
     #[error("{0}")]
     When(String),
 }
 
-/// A series of estimates that was judged.
+/// A judged series of estimates.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// What it amounts to.
+    /// The summary.
     pub figures: Figures,
-    /// What the user should know of its clock.
+    /// What the user should know about its clock.
     pub note: Option<String>,
     /// A constant rotation that explains most of a large error, and the root mean square without it, deg.
     pub turned: Option<(Aligned, f64)>,
-    /// When each estimate given to [`judge`] held, as far as that is known.
+    /// When each estimate given to [`judge`] held, as far as known.
     pub held: Vec<SimTime>,
     series: Series,
     options: Options,
@@ -42,8 +42,8 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Each estimate that has a truth, in the order given, with its error: on the truth's own clock as given, unless
-    /// the delay was asked to be taken out.
+    /// Each estimate that has a truth, in the given order, with its error. On the truth's own clock the times are
+    /// as given, unless the options remove the delay.
     pub fn rows(&self, truth: Truth<'_>, mut each: impl FnMut(Row)) {
         let options = self.options;
         if let Some(bench) = Bench::new(truth, &self.series, options, false) {
@@ -52,14 +52,14 @@ impl Judged {
     }
 }
 
-/// Other ways to read the same estimates, each with what it would mean: `in degrees read as radians`.
+/// Other ways to read the same estimates, each with its meaning: `in degrees read as radians`.
 pub type Readings<'a> = &'a [(&'static str, Series)];
 
-/// Judges the estimates of one source. Those whose stamps are not of the kind that most have are left out, and so are
-/// those for which there is no truth.
+/// Judges the estimates of one source. It leaves out those with another kind of stamp than most have, and those
+/// without a truth.
 ///
 /// # Errors
-/// None is left, or nothing tells when they held.
+/// None is left, or nothing shows when they held.
 pub fn judge(truth: Truth<'_>, estimates: &[Timed], options: &Options) -> Result<Judged, Unjudged> {
     let stamped = Stamped::of(estimates);
     let series = stamped.series(|i| estimates[i].attitude);
@@ -74,11 +74,11 @@ pub fn judge(truth: Truth<'_>, estimates: &[Timed], options: &Options) -> Result
     Ok(judged)
 }
 
-/// [`judge`] for a series whose times are all that is known of it, and which may be read in other ways: if the reading
-/// given is far off and one of the others is not, that is named.
+/// [`judge`] for a series with plain times, which may also be read in other ways: if the given reading has a large
+/// error and another has not, the figures name that one.
 ///
 /// # Errors
-/// As of [`judge`].
+/// Those of [`judge`].
 pub fn judge_series(
     truth: Truth<'_>,
     series: Series,
@@ -93,7 +93,7 @@ pub fn judge_series(
         return Err(Unjudged::NoTruth);
     };
     let mut turned = None;
-    // What is merely late is not mistaken.
+    // A delay alone is no mistake.
     let fitted = figures.fitted.map_or(f64::INFINITY, |fitted| fitted.errors.rms_deg);
     let bad = figures.errors.rms_deg.min(fitted).to_radians();
     if bad > BAD
@@ -117,7 +117,7 @@ pub fn judge_series(
     })
 }
 
-/// The figures, at how much the times are ahead in them, and what was taken out.
+/// The figures, the offset of the times in them, and the removed rotations.
 fn figures(
     bench: &Bench<'_>,
     series: &Series,
@@ -177,7 +177,7 @@ fn figures(
     Ok(Some((figures, ahead, frames)))
 }
 
-/// Each mistake with what undoes it.
+/// Each mistake with its correction.
 fn undoings<'a>(series: &'a Series, others: Readings<'a>, axes: Axes) -> Vec<Undone<'a>> {
     let others = others.iter().filter(|(_, other)| other.len() == series.len());
     let others = others.map(|(name, other)| Undone { name, thinned: Box::new(|count| other.thinned(count)) });
@@ -189,11 +189,11 @@ fn undoings<'a>(series: &'a Series, others: Readings<'a>, axes: Axes) -> Vec<Und
     others.chain(mistakes).collect()
 }
 
-/// As many estimates are looked through for mistakes.
+/// The number of estimates to examine for mistakes.
 const LOOK: usize = 300;
 
-/// The mistake that explains an error of `bad` rad, if there is one, and the root mean square without it, rad; on the
-/// truth's clock (not `other`) each with the delay that it has.
+/// The mistake that explains an error of `bad` rad, if any, and the root mean square without it, rad. On the
+/// truth's clock (not `other`) each is tried with its own delay.
 fn look(
     bench: &Bench<'_>,
     undone: &[Undone<'_>],
@@ -218,10 +218,10 @@ fn look(
     Some((names.join(" or "), best))
 }
 
-/// An error larger than this may be looked through for a constant rotation, deg RMS.
+/// An error larger than this is examined for a constant rotation, deg RMS.
 const TURNED: f64 = 1.0;
 
-/// The constant rotations that explain an error: of the world alone if that does as well.
+/// The constant rotations that explain an error: only that of the world if it explains as much.
 fn turned_frames(bench: &Bench<'_>, series: &Series, ahead: i64) -> Option<(Aligned, f64)> {
     let thin = series.thinned(LOOK * 10);
     let (Errors { rms_deg, .. }, ..) = bench.errors(&thin, ahead, Frames::SAME)?;

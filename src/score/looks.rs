@@ -1,24 +1,25 @@
-//! The usual mistakes of axes, order and sign: each is undone on an estimate that is far off, to see whether it fits.
+//! The usual mistakes of axes, order and sign: each is undone on an estimate with a large error, to see whether it
+//! fits.
 
 use crate::geometry::{Axes, Euler, exp};
 use glam::{DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// An estimate further off than this may be looked through for a mistake, rad: 10 deg RMS.
+/// An estimate with a larger error than this is examined for a mistake, rad: 10 deg RMS.
 pub(super) const BAD: f64 = 10.0 * PI / 180.0;
 /// A mistake is named if undoing it leaves less than this share of the error, and less than [`BAD`].
 pub(super) const SHARE: f64 = 0.2;
-/// Mistakes that explain it this much worse than the best, and this much (rad), do so as well.
+/// Mistakes are equivalent to the best if they explain the error at most this factor, and this much (rad), worse.
 pub(super) const ALIKE: (f64, f64) = (1.5, 0.1 * PI / 180.0);
 
-/// One mistake, and what it does undone.
+/// One mistake and its correction.
 pub(super) struct Mistake {
-    /// After "estimate looks".
+    /// The text after "estimate looks".
     pub name: &'static str,
     pub undo: fn(DQuat) -> DQuat,
 }
 
-/// In the order in which they are named where a motion does not tell them apart.
+/// In the order of preference where a motion does not distinguish them.
 pub(super) const MISTAKES: [Mistake; 17] = [
     Mistake { name: "NED/ENU swapped", undo: |q| Axes::EnuFlu.attitude_in(q).q },
     Mistake { name: "FRD/FLU swapped (body axes alone)", undo: |q| q * turn(DVec3::X, PI) },

@@ -1,9 +1,9 @@
 //! Finds the offset between two unrelated clocks from the motion.
 //!
-//! The angular rates of truth and estimate are compared at every lag at which they overlap ([`Sums`]). The best lag
-//! is that at which the truth tells most of the estimate, in nats: a long overlap that agrees well. It is believed if
-//! it tells much, explains most of what both turned, and no other lag that tells a fair part of that agrees nearly
-//! as well: a motion that repeats agrees with itself a period later.
+//! It compares the angular rates of truth and estimate at every lag at which they overlap ([`Sums`]). The best lag
+//! is the one where the truth gives most information about the estimate, in nats: a long overlap that agrees well.
+//! It is trusted if it gives much information, explains most of the turning of both, and no other lag with a fair
+//! part of that information agrees nearly as well: a motion that repeats agrees with itself a period later.
 
 use super::correlate::{Alike, Sums};
 use super::rates::Rates;
@@ -11,78 +11,78 @@ use super::sampled::Sampled;
 use super::series::Series;
 use std::ops::Range;
 
-/// A cell of the grid: at least this, ns.
+/// The smallest cell of the grid, ns.
 const STEP: i64 = 20_000_000;
-/// The most cells of the longer of the two.
+/// The most cells, for the longer of the two.
 const CELLS: i64 = 1 << 17;
-/// Rates are means over so many cells, the second for an estimate with more noise.
+/// Rates are means over this many cells, the second for an estimate with more noise.
 const WIDTHS: [usize; 2] = [5, 25];
-/// Rows further apart than this say nothing of what is between, ns; and than so many of the median interval.
+/// Rows further apart than this, ns, and than this many median intervals, contain nothing about the time between.
 const GAP: (i64, i64) = (250_000_000, 5);
-/// The truth has to tell so much of the estimate, in nats at 50 cells a second.
+/// The least information of the truth about the estimate, in nats at 50 cells a second.
 const LEAST_INFORMATION: f64 = 300.0;
-/// And has to explain this share of what both turned.
+/// The least share of the turning of both that it must explain.
 const LEAST_SHARE: f64 = 0.5;
-/// Another lag counts if it tells this share of what the best does,
+/// Another lag is a rival if it has this share of the best one's information,
 const RIVAL_INFORMATION: f64 = 0.25;
-/// and is apart by less than so many times what the best is.
+/// and its difference is less than this many times the best one's.
 const RIVAL_APART: f64 = 2.0;
-/// The body's axes may be turned if that brings the two nearer on the grid by so many times.
+/// The body's axes may be rotated if that reduces the difference on the grid by this factor.
 const TURNED_APART: f64 = 2.0;
-/// The overlap is at least this share of the shorter of the two.
+/// The least overlap, as a share of the shorter of the two.
 const LEAST_OVERLAP: f64 = 0.1;
-/// A truth that never turns faster tells nothing of time, rad/s.
+/// A truth that never turns faster contains no information about time, rad/s.
 const LEAST_RATE: f64 = 0.01;
-/// Nor does one that agrees as well over so many ns.
+/// Neither does one that agrees equally well over this many ns.
 const WIDEST: i64 = 2_000_000_000;
-/// Of rivals as many are kept.
+/// The most rivals kept.
 const RIVALS: usize = 64;
 
-/// Where two clocks agree best.
+/// The best agreement of two clocks.
 #[derive(Clone, Debug)]
 pub(super) struct Match {
-    /// How much the estimate's clock is ahead of the truth's, ns.
+    /// How far the estimate's clock is ahead of the truth's, ns.
     pub offset: i64,
-    /// Where it lies for all that the grid shows, ns.
+    /// The range in which the grid locates it, ns.
     pub within: Range<i64>,
-    /// Whether the body's axes had to be turned.
+    /// Whether the body's axes had to be rotated.
     pub free: bool,
-    /// What the two have in common there.
+    /// The agreement of the two there.
     pub alike: Alike,
-    /// Other offsets at which the motion agrees about as well, ns, the nearest to [`Match::offset`] first.
+    /// Other offsets at which the motion agrees about as well, ns, the closest to [`Match::offset`] first.
     pub rivals: Vec<i64>,
-    /// Why it should not be believed.
+    /// A reason not to trust it.
     pub doubt: Option<Doubt>,
 }
 
-/// Why a match should not be believed.
+/// A reason not to trust a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Doubt {
-    /// One of the two never turns, or so evenly that any time is as good.
+    /// One of the two never turns, or turns so evenly that any time fits.
     TooEven,
-    /// Nowhere does the one follow the other.
+    /// Neither follows the other anywhere.
     Unlike,
-    /// Several offsets agree about as well.
+    /// Several offsets agree about equally well.
     Repeats,
 }
 
 /// The best matches over every offset.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// With the body's axes as they are.
+    /// With the body's axes unchanged.
     pub fixed: Match,
-    /// With the body's axes turned, where that brings the two much nearer on the grid.
+    /// With the body's axes rotated, if that brings the two much closer on the grid.
     pub free: Option<Match>,
 }
 
 impl Found {
-    /// What is known of the better of the two.
+    /// The confidence in the better of the two.
     fn rank(&self) -> u8 {
         rank(self.fixed.doubt).max(self.free.as_ref().map_or(0, |free| rank(free.doubt)))
     }
 }
 
-/// The best matches over every offset; `None` where there is nothing to compare.
+/// The best matches over every offset; `None` if there is nothing to compare.
 pub(super) fn find(truth: &Sampled, series: &Series) -> Option<Found> {
     let mut best: Option<Found> = None;
     for width in WIDTHS {
@@ -102,7 +102,7 @@ pub(super) fn find(truth: &Sampled, series: &Series) -> Option<Found> {
     best
 }
 
-/// What is known more of is kept.
+/// The match with the higher rank is kept.
 fn rank(doubt: Option<Doubt>) -> u8 {
     match doubt {
         None => 3,
@@ -112,7 +112,7 @@ fn rank(doubt: Option<Doubt>) -> u8 {
     }
 }
 
-/// Both's rates, on a grid that neither is too coarse nor too long for.
+/// The rates of both, on a grid that is neither too coarse nor too long for either.
 fn rates(truth: &Sampled, series: &Series, width: usize) -> Option<(Rates, Rates)> {
     let times = series.times();
     let span = times.last()?.checked_sub(*times.first()?)?;
@@ -122,7 +122,7 @@ fn rates(truth: &Sampled, series: &Series, width: usize) -> Option<(Rates, Rates
     let gap = |median: i64| GAP.0.max(GAP.1 * median);
     let ours = Rates::of(truth.rows(), step, width, gap(truth.step()));
     let theirs = Rates::of(series.rows(), step, width, gap(median));
-    // Nothing that turns faster than the vehicle ever does follows it.
+    // An estimate that turns faster than the vehicle ever does is jumping.
     let theirs = theirs.without_jumps(1.3 * ours.fastest() + 0.5);
     (!ours.values.is_empty() && !theirs.values.is_empty()).then_some((ours, theirs))
 }
@@ -160,13 +160,13 @@ fn of_sums(sums: &Sums, truth: &Rates, estimate: &Rates, free: bool) -> Option<M
     Some(Match { offset: offset(best), within, free, alike: here, rivals, doubt })
 }
 
-/// Overlaps of fewer cells are not looked at.
+/// The smallest overlap examined, in cells.
 fn least_cells(truth: &Rates, estimate: &Rates) -> f64 {
     let shorter = truth.values.len().min(estimate.values.len()) as f64;
     (LEAST_OVERLAP * shorter).max(25.0f64.min(0.8 * shorter))
 }
 
-/// The lags around the best that are no rivals but its own flanks.
+/// The lags around the best that are its own flanks and no rivals.
 fn lobe(all: &[Option<Alike>], best: usize, here: &Alike) -> Range<usize> {
     let is_near = |i: usize| all[i].is_some_and(|at| at.worse_than(here) < RIVAL_APART);
     let mut from = best;

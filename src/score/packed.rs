@@ -3,20 +3,20 @@
 use crate::geometry::Attitude;
 use glam::DQuat;
 
-/// Bits of each of the three components that are kept.
+/// Bits for each of the three stored components.
 const BITS: u32 = 42;
-/// The largest of them: a component that is not the largest is at most 1/√2.
+/// The bound of a stored component: one that is not the largest is at most 1/√2.
 const LARGEST: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Steps from 0 to it.
+/// Steps from 0 to the bound.
 const STEPS: f64 = ((1u64 << (BITS - 1)) - 1) as f64;
 
-/// A rotation as its three smaller components, 42 bits each, and which one is left out: right to 3·10⁻¹³ rad. The
-/// sign of the quaternion, which says nothing of the rotation, is not kept.
+/// A rotation as its three smaller components, 42 bits each, and the index of the omitted one: accurate to 3·10⁻¹³
+/// rad. The sign of the quaternion, which does not affect the rotation, is not stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packed(u128);
 
 impl Packed {
-    /// Of a quaternion of length 1.
+    /// Packs a quaternion of unit length.
     pub fn new(q: DQuat) -> Packed {
         let c = q.to_array();
         let largest = (0..4).fold(0, |best, i| if c[i].abs() > c[best].abs() { i } else { best });
@@ -44,7 +44,7 @@ impl Packed {
         DQuat::from_array(c)
     }
 
-    /// The same as an attitude.
+    /// The rotation as an attitude.
     pub fn attitude(self) -> Attitude {
         Attitude::from_quat(self.quat())
     }

@@ -1,4 +1,4 @@
-//! When estimates held: on the truth's clock, or on one of their own and by how much that is ahead.
+//! Determines when estimates held: on the truth's clock, or on their own clock and its offset.
 
 use super::bench::{Bench, DELAYS, STEP};
 use super::delay::{self, Fit};
@@ -8,56 +8,56 @@ use super::offset::{self, Doubt, Found, Match};
 use super::series::Series;
 use crate::time::SimTime;
 
-/// A delay up to which an estimate is taken to be on the truth's clock whatever its times, ns.
+/// An estimate with a delay in this range counts as on the truth's clock, whatever its times, ns.
 const PLAIN: std::ops::Range<i64> = -100_000_000..500_000_000;
-/// Times that begin and end as near to the truth's are the truth's, ns.
+/// Times that start and end this close to the truth's are on the truth's clock, ns.
 const TOGETHER: i64 = 50_000_000;
-/// An offset whose standard error is above this is not certain, ns.
+/// An offset with a standard error above this is uncertain, ns.
 const SHARP: f64 = 1_000_000.0;
-/// Offsets that change a figure by no more than this share of it, or this much (rad), need not be told apart.
+/// Offsets that change a figure by at most this share of it, or this much (rad), need not be distinguished.
 const ALIKE: (f64, f64) = (0.03, 0.02 * std::f64::consts::PI / 180.0);
-/// As many offsets are tried where any could be.
+/// The number of offsets to try where any is possible.
 const TRIED: i64 = 33;
-/// Of what can overlap, the share that such an offset has to.
+/// The share of the possible overlap that such an offset must have.
 const OVERLAP: f64 = 0.9;
-/// As many estimates are looked at for that.
+/// The number of estimates examined for that.
 const LOOKED_AT: usize = 600;
-/// An estimate that is read as by a mistake is looked at whole up to so many rows.
+/// For a possible mistake, an estimate is examined whole up to this many rows.
 const ROWS: usize = 60_000;
 
-/// Where a series lies in time.
+/// The position of a series in time.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Placed {
-    /// Whether its clock is another than the truth's.
+    /// Whether its clock differs from the truth's.
     pub other: bool,
-    /// How much its clock is ahead, its delay included, ns; 0 on the truth's.
+    /// How far its clock is ahead, its delay included, ns; 0 on the truth's.
     pub ahead: i64,
-    /// The standard error of that, ns.
+    /// The standard error of the offset, ns.
     pub error: Option<f64>,
-    /// Whether there is no doubt about the clock.
+    /// Whether the clock is known without doubt.
     pub certain: bool,
-    /// How it is known, for the user.
+    /// How it was determined, for the user.
     pub note: Option<String>,
     /// The delay on the truth's clock.
     pub delay: Option<Fit>,
 }
 
 impl Placed {
-    /// On the truth's clock.
+    /// A series on the truth's clock.
     pub fn on_truths(delay: Option<Fit>) -> Placed {
         Placed { other: false, ahead: 0, error: None, certain: true, note: None, delay }
     }
 }
 
-/// A mistake of axes, order or sign with the estimates as they are without it.
+/// A mistake of axes, order or sign, with the corrected estimates.
 pub(super) struct Undone<'a> {
-    /// After "estimate looks".
+    /// The text after "estimate looks".
     pub name: &'static str,
-    /// At most so many of the estimates, as [`Series::thinned`] takes them.
+    /// At most this many of the estimates, chosen by [`Series::thinned`].
     pub thinned: Box<dyn Fn(usize) -> Series + 'a>,
 }
 
-/// Where a series lies in time, or why that cannot be told.
+/// The position of a series in time, or why it is unknown.
 pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> Result<Placed, String> {
     match bench.options.clock {
         Clock::Sample => return Ok(Placed::on_truths(Some(Fit::EXACT))),
@@ -77,8 +77,8 @@ pub(super) fn place(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>])
     indifferent(bench, series, found.as_ref())
 }
 
-/// The best match; that with the body's axes turned where these really are: what is off by part of a cell of the grid
-/// only looks so.
+/// The best match; the one with rotated body axes only if they really are rotated, because an offset of part of a
+/// grid cell looks similar.
 fn best_match(bench: &Bench<'_>, series: &Series) -> Option<Match> {
     let Found { fixed, free } = offset::find(&bench.grid, series)?;
     let Some(free) = free else { return Some(fixed) };
@@ -86,17 +86,17 @@ fn best_match(bench: &Bench<'_>, series: &Series) -> Option<Match> {
     Some(if apart(&fixed) > TURNED_APART * apart(&free) + NOTHING { free } else { fixed })
 }
 
-/// The body's axes are turned if that brings the two nearer by so many times.
+/// The body's axes count as rotated if that reduces the difference by this factor.
 const TURNED_APART: f64 = 4.0;
-/// How finely the delays of a match are looked at, ns.
+/// The step for the delays of a match, ns.
 fn step(found: &Match) -> i64 {
     STEP.max((found.within.end - found.within.start) / 400)
 }
 
-/// Rates that differ by less are the same, (rad/s)².
+/// Rates that differ by less count as equal, (rad/s)².
 const NOTHING: f64 = 1e-5;
 
-/// Whether the times begin and end with the truth's.
+/// Whether the times start and end with the truth's.
 fn together(bench: &Bench<'_>, series: &Series) -> bool {
     let times = series.times();
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return false };
@@ -105,7 +105,7 @@ fn together(bench: &Bench<'_>, series: &Series) -> bool {
     apart(first, bench.options.from.0) <= near && apart(last, bench.options.until.0) <= near
 }
 
-/// A clear match, to a microsecond.
+/// Refines a clear match to a microsecond.
 fn settle(bench: &Bench<'_>, series: &Series, found: &Match) -> Result<Placed, String> {
     let exact = |t: i64| bench.around(t);
     let fit = delay::near(&bench.grid, &exact, series, &found.within, step(found), found.free);
@@ -138,7 +138,7 @@ fn settle(bench: &Bench<'_>, series: &Series, found: &Match) -> Result<Placed, S
     Err(format!("{around}: that leaves {:.3} to {:.3} deg RMS", least.to_degrees(), most.to_degrees()))
 }
 
-/// The match that is clear once a mistake is undone, where that also explains the error.
+/// A match that becomes clear once a mistake is undone, if that also explains the error.
 fn of_a_mistake(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> Option<Match> {
     let thin = series.thinned(ROWS);
     let tried = mistakes.iter().filter_map(|mistake| {
@@ -154,7 +154,7 @@ fn of_a_mistake(bench: &Bench<'_>, series: &Series, mistakes: &[Undone<'_>]) -> 
     tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
 
-/// Where nothing tells the offset, but it makes no difference.
+/// Handles an offset that nothing determines but that makes no difference.
 fn indifferent(bench: &Bench<'_>, series: &Series, found: Option<&Match>) -> Result<Placed, String> {
     let offsets = match found {
         Some(found) if found.doubt == Some(Doubt::Repeats) => {
@@ -195,7 +195,7 @@ fn why(found: Option<&Match>, least: f64, most: f64) -> String {
     }
 }
 
-/// Offsets at which the two overlap about as much as they can, the first that of both beginnings.
+/// Offsets with about the largest possible overlap; the first aligns both starts.
 fn anywhere(bench: &Bench<'_>, series: &Series) -> Vec<i64> {
     let times = series.times();
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Vec::new() };
@@ -208,7 +208,7 @@ fn anywhere(bench: &Bench<'_>, series: &Series) -> Vec<i64> {
     std::iter::once(a).chain((0..TRIED).map(|i| low + i * step)).collect()
 }
 
-/// The least and the largest root mean square at some offsets, rad.
+/// The smallest and largest root mean square at some offsets, rad.
 fn spread(bench: &Bench<'_>, series: &Series, offsets: impl IntoIterator<Item = i64>) -> (f64, f64) {
     let thin = series.thinned(LOOKED_AT);
     let all = offsets.into_iter().map(|offset| bench.rms(&thin, offset).unwrap_or(f64::INFINITY));

@@ -1,25 +1,26 @@
-//! Angular rates on an even grid: what two series of attitudes say alike, whatever constant error one of them has.
+//! Angular rates on an even grid: they agree for two series of attitudes, whatever constant error one of them has.
 //!
-//! The body's rate over a cell is the mean of `log(qᵢ* ⊗ qᵢ₊₁)` over the rows within it. A constant turn of the nav axes
-//! leaves it as it is, one of the body axes turns it, and neither changes its size.
+//! The body's rate over a cell is the mean of `log(qᵢ* ⊗ qᵢ₊₁)` over the rows within it. A constant turn of the nav
+//! axes does not change it, one of the body axes rotates it, and neither changes its magnitude.
 
 use crate::geometry::log;
 use glam::{DQuat, DVec3};
 use std::ops::Range;
 
-/// Mean angular rates in body axes, rad/s: value `i` over the cells from `first + i` on, `width` of them.
+/// Mean angular rates in body axes, rad/s: value `i` covers `width` cells from `first + i` on.
 pub(super) struct Rates {
-    /// The number of the first cell; cell `k` begins at `k·step`.
+    /// The index of the first cell; cell `k` starts at `k·step`.
     pub first: i64,
-    /// Of a cell, ns.
+    /// Length of a cell, ns.
     pub step: i64,
     pub values: Vec<DVec3>,
-    /// Whether rows say what it was.
+    /// Whether rows determine the rate.
     pub known: Vec<bool>,
 }
 
 impl Rates {
-    /// Of rows in order of time (ns), between which it turns evenly; across more than `gap` ns nothing is known.
+    /// Rates of rows in time order (ns), with even turning between them; across more than `gap` ns they are
+    /// unknown.
     pub fn of(rows: impl Iterator<Item = (i64, DQuat)>, step: i64, width: usize, gap: i64) -> Rates {
         let mut edges = Edges { first: None, step, turned: Vec::new(), unknown: Vec::new() };
         let mut last: Option<(i64, DQuat)> = None;
@@ -35,17 +36,17 @@ impl Rates {
         edges.rates(width)
     }
 
-    /// The largest size, rad/s.
+    /// The largest magnitude, rad/s.
     pub fn fastest(&self) -> f64 {
         self.known().map(|rate| rate.length()).fold(0.0, f64::max)
     }
 
-    /// The rates that are known.
+    /// The known rates.
     pub fn known(&self) -> impl Iterator<Item = DVec3> + '_ {
         self.values.iter().zip(&self.known).filter(|(_, known)| **known).map(|(rate, _)| *rate)
     }
 
-    /// Takes what is faster than `limit` rad/s for a jump, of which nothing is known.
+    /// Treats rates above `limit` rad/s as jumps, and marks them as unknown.
     pub fn without_jumps(mut self, limit: f64) -> Rates {
         for (rate, known) in self.values.iter().zip(&mut self.known) {
             *known &= rate.length() <= limit;
@@ -54,7 +55,7 @@ impl Rates {
     }
 }
 
-/// What had been turned, and how long nothing was known, at the edges of the cells.
+/// The turn so far, and the unknown time so far, at the edges of the cells.
 struct Edges {
     first: Option<i64>,
     step: i64,
@@ -63,7 +64,7 @@ struct Edges {
 }
 
 impl Edges {
-    /// The edges within a time, between whose ends both grew evenly from so much by so much.
+    /// Fills the edges within a time in which both grow evenly; each pair is the start value and the increase.
     fn pass(&mut self, time: Range<i64>, turned: (DVec3, DVec3), unknown: (i64, i64)) {
         let first = *self.first.get_or_insert(
             time.start.div_euclid(self.step) + i64::from(time.start.rem_euclid(self.step) > 0),

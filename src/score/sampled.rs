@@ -1,4 +1,4 @@
-//! The truth on an even grid: for a search that looks at it a million times.
+//! The truth on an even grid, for a search that reads it a million times.
 
 use super::given::Truth;
 use crate::geometry::log;
@@ -7,10 +7,10 @@ use glam::DQuat;
 
 /// The finest grid, ns.
 const STEP: i64 = 2_000_000;
-/// The most points; a longer run has a wider grid.
+/// The most points; a longer run gets a coarser grid.
 const POINTS: i64 = 200_000;
 
-/// Attitudes at even times, between them interpolated; where nothing is known there is none.
+/// Attitudes at even times, interpolated between; `None` where unknown.
 pub(super) struct Sampled {
     from: i64,
     step: i64,
@@ -18,7 +18,7 @@ pub(super) struct Sampled {
 }
 
 impl Sampled {
-    /// Of `[from, to]`, ns; empty where there is nothing between them.
+    /// The truth over `[from, to]`, ns; empty if the interval is empty.
     pub fn new(truth: Truth<'_>, from: i64, to: i64) -> Sampled {
         let span = to.saturating_sub(from);
         let step = STEP.max(span / POINTS);
@@ -27,7 +27,7 @@ impl Sampled {
         Sampled { from, step, points }
     }
 
-    /// At `t` ns, by the chord: on a grid so fine the arc is no different.
+    /// The attitude at `t` ns, by the chord: on such a fine grid its difference from the arc is negligible.
     pub fn at(&self, t: i64) -> Option<DQuat> {
         let past = t.checked_sub(self.from)?;
         let i = usize::try_from(past.div_euclid(self.step)).ok()?;
@@ -38,12 +38,12 @@ impl Sampled {
         Some((a * (1.0 - share) + b * share).normalize())
     }
 
-    /// The points that are known, with their times in ns.
+    /// The known points, with their times in ns.
     pub fn rows(&self) -> impl Iterator<Item = (i64, DQuat)> + '_ {
         (0..).zip(&self.points).filter_map(|(i, point)| Some((self.from + i * self.step, (*point)?)))
     }
 
-    /// Between two points, ns.
+    /// The interval between points, ns.
     pub fn step(&self) -> i64 {
         self.step
     }

@@ -1,11 +1,11 @@
-//! Estimates with their times, in little memory.
+//! Estimates with their times, stored compactly.
 
 use super::packed::Packed;
 use crate::geometry::Attitude;
 use glam::DQuat;
 use std::ops::Range;
 
-/// Attitudes (body to nav) with their times (ns), in the order given: 24 bytes each.
+/// Attitudes (body to nav) with their times (ns), in the given order: 24 bytes each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
     times: Vec<i64>,
@@ -13,14 +13,14 @@ pub struct Series {
 }
 
 impl Series {
-    /// Of rows of time (ns) and attitude; of a quaternion of any length its direction.
+    /// A series of rows of time (ns) and attitude; normalises each quaternion.
     pub fn new(rows: impl IntoIterator<Item = (i64, Attitude)>) -> Series {
         let (times, attitudes) =
             rows.into_iter().map(|(t, attitude)| (t, Packed::new(attitude.q.normalize()))).unzip();
         Series { times, attitudes }
     }
 
-    /// Of times (ns) and as many attitudes.
+    /// A series of times (ns) and as many attitudes.
     pub fn of(times: Vec<i64>, attitudes: Vec<Packed>) -> Series {
         Series { times, attitudes }
     }
@@ -36,7 +36,7 @@ impl Series {
         self.attitudes.push(Packed::new(attitude.q.normalize()));
     }
 
-    /// How many there are.
+    /// The number of rows.
     pub fn len(&self) -> usize {
         self.times.len()
     }
@@ -56,12 +56,12 @@ impl Series {
         self.attitudes[i].attitude()
     }
 
-    /// The rows in the order given.
+    /// The rows in the given order.
     pub(super) fn rows(&self) -> impl ExactSizeIterator<Item = (i64, DQuat)> + Clone + '_ {
         self.times.iter().zip(&self.attitudes).map(|(t, q)| (*t, q.quat()))
     }
 
-    /// Every k-th, so that at most `count` are left.
+    /// Every k-th row, so that at most `count` remain.
     pub(super) fn thinned(&self, count: usize) -> Series {
         let every = self.len().div_ceil(count).max(1);
         Series {
@@ -76,7 +76,7 @@ impl Series {
         Series { times: self.times.clone(), attitudes }
     }
 
-    /// The interval that half of all exceed, ns; `None` of fewer than two rows.
+    /// The median interval, ns; `None` for fewer than two rows.
     pub(super) fn median_interval(&self) -> Option<i64> {
         let every = (self.times.len() / 10_000).max(1);
         let pairs = self.times.windows(2).step_by(every);

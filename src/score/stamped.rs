@@ -1,4 +1,4 @@
-//! Which estimates count, each with a time on one clock.
+//! Selects the estimates that count, with their times on one clock.
 
 use super::clock;
 use super::given::{HeldAt, Timed};
@@ -6,7 +6,7 @@ use super::series::Series;
 use crate::geometry::Attitude;
 use crate::time::SimTime;
 
-/// The estimates that count, by number, with their times.
+/// The estimates that count, by index, with their times.
 pub(super) struct Stamped {
     of: Vec<usize>,
     times: Vec<i64>,
@@ -14,7 +14,7 @@ pub(super) struct Stamped {
 }
 
 impl Stamped {
-    /// Those whose stamps are of the kind that most have, and whose attitude is one.
+    /// Selects estimates with the most common kind of stamp and a valid attitude.
     pub fn of(estimates: &[Timed]) -> Stamped {
         let kind = |stamp: HeldAt| match stamp {
             HeldAt::Sample(_) => 0,
@@ -44,7 +44,7 @@ impl Stamped {
         Series::new(self.times.iter().zip(&self.of).map(|(t, &i)| (*t, attitude(i))))
     }
 
-    /// The median of arrival less when it held, ms.
+    /// The median of arrival minus the time it held, ms.
     pub fn delay_ms(&self, estimates: &[Timed], delay: i64) -> Option<f64> {
         let late = |(&i, &t): (&usize, &i64)| estimates[i].arrival.0 - (t - delay);
         let mut delays: Vec<i64> = self.of.iter().zip(&self.times).map(late).collect();
@@ -52,7 +52,7 @@ impl Stamped {
         delays.get(delays.len() / 2).map(|&ns| ns as f64 * 1e-6)
     }
 
-    /// When each estimate held, had those that count come `delay` ns late by their times.
+    /// When each estimate held, if those that count are `delay` ns late by their times.
     pub fn held(&self, estimates: &[Timed], delay: i64) -> Vec<SimTime> {
         let late = self.delay_ms(estimates, delay).map_or(0, |ms| libm::round(ms * 1e6) as i64);
         let mut held: Vec<_> = estimates.iter().map(|estimate| estimate.arrival - SimTime(late)).collect();

@@ -1,4 +1,4 @@
-//! Estimates with known errors, delays, offsets and mistakes get exactly those back.
+//! Known errors, delays, offsets and mistakes of estimates come back exactly.
 
 use super::looks::MISTAKES;
 use super::*;
@@ -8,7 +8,7 @@ use crate::time::SimTime;
 use glam::{DQuat, DVec3};
 use rand::RngExt;
 
-/// A flight that turns about all axes.
+/// A flight that turns about every axis.
 fn flight(t: SimTime) -> Attitude {
     let t = t.seconds();
     let roll = 0.45 * libm::sin(0.7 * t);
@@ -17,7 +17,7 @@ fn flight(t: SimTime) -> Attitude {
     Attitude::from_quat(Euler { roll, pitch, yaw }.to_quat())
 }
 
-/// Half a minute at 50 Hz that arrives `late` ns after it held, each turned in nav axes by `error`, rad.
+/// Half a minute at 50 Hz that arrives `late` ns after it held, each rotated in nav axes by `error`, rad.
 fn late(late: i64, error: impl Fn(f64) -> DVec3) -> Vec<Timed> {
     let estimate = |k: i64| {
         let held = SimTime(3_000_000_000 + 20_000_000 * k);
@@ -27,7 +27,7 @@ fn late(late: i64, error: impl Fn(f64) -> DVec3) -> Vec<Timed> {
     (0..1500).map(estimate).collect()
 }
 
-/// A truth that is known at any time.
+/// A truth that is known at every time.
 fn known(truth: impl Fn(SimTime) -> Attitude) -> impl Fn(SimTime) -> Option<Attitude> {
     move |t| Some(truth(t))
 }
@@ -54,7 +54,7 @@ fn a_delay_and_a_constant_error_come_back_beside_each_other() {
         for (error, inclination, turn) in [(tilt, 1.0, 0.0), (heading, 0.0, 3.0), (DVec3::ZERO, 0.0, 0.0)] {
             let found = figures(&late(delay, |_| error), Options::default());
             assert_eq!(found.delay_known, DelayKnown::Estimated);
-            // Within 2 µs, and what 2 µs of motion amount to.
+            // Within 2 µs, and the motion in 2 µs.
             assert!(near(found.delay_ms.unwrap(), delay as f64 * 1e-6, 2e-3), "{delay} {error:?}: {found:?}");
             assert!(
                 near(found.errors.inclination_rms_deg, inclination, 1e-4),
@@ -83,9 +83,9 @@ fn noise_moves_the_delay_by_no_more_than_its_standard_error_allows() {
     let noise: Vec<DVec3> = (0..1500).map(|_| DVec3::new(normal(), normal(), normal()) * 0.02).collect();
     let found =
         figures(&late(80_000_000, |t| noise[libm::round((t - 3.0) * 50.0) as usize]), Options::default());
-    // 0.02 rad of noise over some 0.3 rad/s that vary and 1500 estimates is 1.7 ms; five times that.
+    // 0.02 rad of noise over about 0.3 rad/s that vary and 1500 estimates is 1.7 ms; five times that.
     assert!(near(found.delay_ms.unwrap(), 80.0, 8.6), "{found:?}");
-    // √3·0.02 rad, of which 1500·3 numbers give 1 % of it; five times that.
+    // √3·0.02 rad, which 1500·3 numbers determine to 1 %; five times that.
     assert!(near(found.errors.rms_deg, (3f64.sqrt() * 0.02).to_degrees(), 0.1), "{found:?}");
 }
 
@@ -112,7 +112,7 @@ fn a_clock_of_its_own_takes_the_jitter_of_the_way_out() {
     let mut way = 0.0;
     for estimate in &mut estimates {
         let held = estimate.arrival;
-        // 25 ppm fast, 77 s ahead, in whole milliseconds; 5 to 25 ms of way.
+        // 25 ppm fast, 77 s ahead, in whole milliseconds; 5 to 25 ms of transmission.
         estimate.stamp = HeldAt::Own((77_000_000_000 + held.0 + held.0 / 40_000) / 1_000_000 * 1_000_000);
         let late = random.random_range(5_000_000..25_000_000);
         way += late as f64 * 1e-6 / 1500.0;
@@ -120,9 +120,9 @@ fn a_clock_of_its_own_takes_the_jitter_of_the_way_out() {
     }
     let found = figures(&estimates, Options::default());
     assert!(near(found.delay_ms.unwrap(), way, 1.0), "{way}: {found:?}");
-    // Half a millisecond of resolution is 0.01 deg here; the 20 ms of the way would be 0.2.
+    // Half a millisecond of resolution is 0.01 deg here; the 20 ms of transmission would be 0.2.
     assert!(found.errors.rms_deg < 0.03, "{found:?}");
-    // Without its clock the way's jitter counts as error.
+    // Without its clock the transmission jitter counts as error.
     estimates.iter_mut().for_each(|estimate| estimate.stamp = HeldAt::Arrival);
     assert!(figures(&estimates, Options::default()).errors.rms_deg > 0.1);
 }
@@ -193,7 +193,7 @@ fn of_an_even_motion_no_delay_is_told() {
         let found = judge(&known(truth), &estimates, &Options::default()).unwrap().figures;
         assert_eq!((found.delay_ms, found.delay_known), (None, DelayKnown::Unknown));
         assert!(found.delay_doubt.unwrap().contains("too even"), "{found:?}");
-        // It is set against the truth at the times as given.
+        // It is compared with the truth at the given times.
         let expected = truth(SimTime::ZERO).angle_to(truth(SimTime(50_000_000))).to_degrees();
         assert!(near(found.errors.rms_deg, expected, 1e-9), "{found:?}");
     }
@@ -211,7 +211,7 @@ fn of_a_motion_that_repeats_the_nearest_delay_is_taken() {
     assert!(near(found.delay_ms.unwrap(), 50.0, 0.01), "{found:?}");
 }
 
-/// Estimates of the flight as a mistake would have them; `noise` rad of other errors.
+/// Estimates of the flight with a mistake; `noise` rad of other errors.
 fn mistaken(make: impl Fn(DQuat) -> DQuat, noise: f64) -> Vec<Timed> {
     let mut random = random::stream(3, "mistaken");
     let mut estimates = late(30_000_000, |_| DVec3::ZERO);
@@ -223,7 +223,7 @@ fn mistaken(make: impl Fn(DQuat) -> DQuat, noise: f64) -> Vec<Timed> {
     estimates
 }
 
-/// What makes the mistake that undoing takes back.
+/// The mistake whose correction is under test.
 fn make(name: &str) -> fn(DQuat) -> DQuat {
     let undo_of = |name: &str| MISTAKES.iter().find(|mistake| mistake.name == name).unwrap().undo;
     match name {
@@ -275,7 +275,7 @@ fn where_the_motion_does_not_tell_mistakes_apart_each_is_named() {
     assert!(looks.contains("conjugated") && looks.contains(" or ") && looks.contains("yaw sign"), "{looks}");
 }
 
-/// Negative controls: no estimate that is merely poor is called anything.
+/// Negative controls: a merely poor estimate is not called a mistake.
 #[test]
 fn a_poor_estimate_is_not_called_a_mistake() {
     let mut random = random::stream(4, "poor");

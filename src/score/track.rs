@@ -8,28 +8,28 @@ use crate::time::SimTime;
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttitudeTrack {
     rows: Series,
-    /// Rows further apart than this leave a gap, in which nothing is known, ns.
+    /// Rows further apart than this leave a gap, where the truth is unknown, ns.
     gap: i64,
 }
 
-/// A table that cannot be a truth.
+/// Why a table cannot be a truth.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct TrackError(String);
 
 impl AttitudeTrack {
-    /// Of rows in order of time; between any two of them the truth is known.
+    /// A track of rows in time order; the truth is known between any two of them.
     ///
     /// # Errors
-    /// Fewer than two rows, or one that is not after the row before.
+    /// There are fewer than two rows, or one is not after the row before.
     pub fn new(rows: impl IntoIterator<Item = (SimTime, Attitude)>) -> Result<AttitudeTrack, TrackError> {
         AttitudeTrack::of(Series::new(rows.into_iter().map(|(t, attitude)| (t.0, attitude))))
     }
 
-    /// The same of a series.
+    /// A track of a series.
     ///
     /// # Errors
-    /// As of [`AttitudeTrack::new`].
+    /// Those of [`AttitudeTrack::new`].
     pub fn of(rows: Series) -> Result<AttitudeTrack, TrackError> {
         if rows.len() < 2 {
             return Err(TrackError(format!("has {} rows, but a truth needs at least two", rows.len())));
@@ -46,8 +46,8 @@ impl AttitudeTrack {
         }
     }
 
-    /// The same, recorded: between rows that are further apart than a quarter of a second and than five times their
-    /// median interval nothing is known.
+    /// The same as a recording: between rows further apart than a quarter of a second and than five times their
+    /// median interval the truth is unknown.
     pub fn with_gaps(self) -> AttitudeTrack {
         let gap = self.rows.median_interval().unwrap_or(0).saturating_mul(5).max(250_000_000);
         AttitudeTrack { gap, ..self }
@@ -63,12 +63,12 @@ impl AttitudeTrack {
         SimTime(self.rows.times()[self.rows.len() - 1])
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether there is none, which cannot be.
+    /// Always false: a track has at least two rows.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -78,7 +78,7 @@ impl AttitudeTrack {
         (0..self.len()).step_by(every.max(1)).map(|i| (SimTime(self.rows.times()[i]), self.rows.attitude(i)))
     }
 
-    /// At any time; before the first row and after the last as there, in a gap nothing.
+    /// The attitude at any time: before the first row the first, after the last row the last, in a gap `None`.
     pub fn at(&self, t: SimTime) -> Option<Attitude> {
         let times = self.rows.times();
         let after = times.partition_point(|row| *row <= t.0);
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn between_two_rows_it_turns_evenly_and_outside_it_holds() {
         let at = |angle: f64| Attitude::from_quat(exp(DVec3::new(0.0, angle, 0.0)));
-        // The sign of a row's quaternion is free.
+        // The sign of a row's quaternion is arbitrary.
         let rows = vec![(SimTime(10), at(0.1)), (SimTime(30), Attitude::from_quat(-at(0.5).q))];
         let track = AttitudeTrack::new(rows).unwrap();
         for (t, angle) in [(0, 0.1), (10, 0.1), (15, 0.2), (20, 0.3), (30, 0.5), (99, 0.5)] {

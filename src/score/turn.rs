@@ -1,10 +1,10 @@
-//! The rotation that brings one set of vectors nearest to another (B. Horn, *Closed-form solution of absolute
+//! The rotation that brings one set of vectors closest to another (B. Horn, *Closed-form solution of absolute
 //! orientation using unit quaternions*, J. Opt. Soc. Am. A 4(4), 1987).
 
 use glam::{DQuat, DVec3};
 use nalgebra::{Matrix4, SymmetricEigen};
 
-/// `Σ a bᵀ` of two sets of vectors, by rows.
+/// `Σ a bᵀ` of two sets of vectors, row by row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Products(pub [f64; 9]);
 
@@ -21,7 +21,8 @@ impl Products {
         self.0[0] + self.0[4] + self.0[8]
     }
 
-    /// The rotation `R` with the largest `Σ a·(R b)`, and that. What nothing tells stays as it is.
+    /// The rotation `R` with the largest `Σ a·(R b)`, and that sum. A rotation that the vectors do not determine
+    /// stays the identity.
     pub fn best_turn(&self) -> (DQuat, f64) {
         let [xx, yx, zx, xy, yy, zy, xz, yz, zz] = self.0;
         let size = self.0.iter().fold(0.0_f64, |most, c| most.max(c.abs()));

@@ -3,8 +3,7 @@
 //! `w(t) = h₀₀·wᵢ + h₁₀·T·wᵢ′ + h₀₁·wᵢ₊₁ + h₁₁·T·wᵢ₊₁′`, the cubic Hermite polynomial (C. de Boor, *A practical
 //! guide to splines*, 1978, ch. IV). A row's slope is that of the quartic through the five nearest rows, so the
 //! rate between even rows is of fourth order in their interval. Across a gap the rate is linear and uses no row
-//! beyond the gap. The attitude is
-//! [`Integrated`] with the rows as edges.
+//! beyond the gap. The attitude is [`Integrated`] with the rows as edges.
 
 use super::grid::Grid;
 use crate::double::Double;

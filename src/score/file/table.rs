@@ -1,4 +1,4 @@
-//! Text: a TUM trajectory, which has no header, and any other table, whose columns are found by their names.
+//! Text files: a TUM trajectory, which has no header, and any other table, with columns found by name.
 
 use super::{FileError, READER, Reading, Recorded, no_rotation};
 use crate::geometry::{Axes, Euler};
@@ -51,7 +51,7 @@ pub(super) fn read<R: BufRead>(name: &str, reader: R, reading: &Reading) -> Resu
     }
 }
 
-/// What a series amounts to, in no axes yet.
+/// Makes the result from a series; its axes are not set yet.
 fn recorded(name: &str, series: Series<Packed>, mut remarks: Vec<String>) -> Result<Recorded, FileError> {
     let told = series.rows.told();
     if series.values.is_empty() {
@@ -84,8 +84,8 @@ fn euler([roll, pitch, yaw]: &[f64; 3], unit: f64, axes: Axes) -> Packed {
     Packed::new(axes.attitude_in(angles.to_quat().normalize()).q)
 }
 
-/// What of the user's choice concerns this table: columns that it has by these names, and all where its own names say
-/// nothing.
+/// The part of the user's choice that applies to this table: columns with these names, and all of it if the table's
+/// own names identify nothing.
 fn choice<R: BufRead>(table: &Table<R>, given: &Choice) -> Result<Choice, FileError> {
     let own = Choice::default();
     let has = |names: &[String]| names.iter().all(|name| table.has(name));
@@ -101,7 +101,7 @@ fn choice<R: BufRead>(table: &Table<R>, given: &Choice) -> Result<Choice, FileEr
     })
 }
 
-/// How many rad the unit of angles is.
+/// The size of the unit of angles, rad.
 fn unit_of_angles<R>(table: &Table<R>, set: &Set<3>, remarks: &mut Vec<String>) -> Result<f64, FileError>
 where
     R: BufRead,
@@ -119,7 +119,7 @@ where
     })
 }
 
-/// That other columns could have been meant.
+/// Reports that other columns were possible.
 fn tell_others<R: BufRead, const N: usize>(table: &Table<R>, set: &Set<N>, remarks: &mut Vec<String>) {
     if !set.others.is_empty() {
         let (first, others) = (table.called(set.columns[0]), set.others.join(", "));
@@ -128,7 +128,7 @@ fn tell_others<R: BufRead, const N: usize>(table: &Table<R>, set: &Set<N>, remar
     }
 }
 
-/// What a table lacks, and how to say what is meant.
+/// What a table lacks, and how to name the columns.
 fn lacking<R: BufRead>(table: &Table<R>, has_time: bool, has_attitude: bool) -> FileError {
     if let Some(kind) = table.kind() {
         let name = table.place();

@@ -1,4 +1,4 @@
-//! What was written is read back; what is wrong is told with its place.
+//! Written data reads back; an error names its place.
 
 use super::*;
 use crate::geometry::{Attitude, Euler};
@@ -15,13 +15,13 @@ fn wrote(text: &str, axes: Axes) -> Result<Recorded, String> {
         .map_err(|error| error.to_string())
 }
 
-/// Ten rows by their number, under a header.
+/// Ten rows made from their number, under a header.
 fn rows(header: &str, row: impl Fn(i64) -> String) -> String {
     let rows: Vec<_> = (0..10).map(row).collect();
     format!("{header}\n{}\n", rows.join("\n"))
 }
 
-/// What is recorded, with its times in the likeliest unit.
+/// The recorded attitudes, with their times in the likeliest unit.
 fn timed(recorded: &Recorded) -> Vec<Timed> {
     let times = recorded.times.in_ns(recorded.times.guess().0).unwrap();
     let one = |(t, q): (i64, &Packed)| Timed {
@@ -60,7 +60,7 @@ fn tables_are_read_by_the_names_of_their_columns() {
             let [roll, pitch, yaw] = [e.roll, e.pitch, e.yaw].map(f64::to_degrees);
             format!("{}\t{yaw}\t{pitch}\t{roll}", k * 10_000)
         }),
-        // As numpy.savetxt writes a header, and a spreadsheet the first bytes of a file.
+        // A header as numpy.savetxt writes it, and the first bytes of a spreadsheet's file.
         rows("# made by hand\n# t_s,qw,qx,qy,qz", |k| {
             format!("{},{},{},{},{}", k as f64 * 0.01, q(k).w, q(k).x, q(k).y, q(k).z)
         }),
@@ -152,7 +152,7 @@ fn record(kind: u8, payload: &[u8]) -> Vec<u8> {
     [&size[..], &[kind], payload].concat()
 }
 
-/// A log by docs.px4.io, "ULog File Format": another topic, a second instance, a field before the quaternion.
+/// A log after docs.px4.io, "ULog File Format": another topic, a second instance, a field before the quaternion.
 fn log(first: i64, topic: &str) -> Vec<u8> {
     let mut log = [MAGIC_AND_VERSION, &[0; 8]].concat();
     log.extend(record(b'B', &[0; 40]));

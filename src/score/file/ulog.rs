@@ -1,8 +1,8 @@
 //! PX4's ULog: the topic `vehicle_attitude`, quaternion w first, body (FRD) to nav (NED), time in µs since boot.
 //!
-//! Format: docs.px4.io, "ULog File Format". The first instance of the topic is read; its time is that of the sample the
-//! estimate rests on (`timestamp_sample`) where the log has it, else that of publication. Records without a finite
-//! attitude are left out and counted.
+//! Format: docs.px4.io, "ULog File Format". It reads the first instance of the topic. The time is that of the
+//! sample behind the estimate (`timestamp_sample`) if the log has it, else that of publication. Records without a
+//! finite attitude are left out and counted.
 
 use super::{FileError, Recorded, no_rotation};
 use crate::geometry::Axes;
@@ -72,7 +72,7 @@ pub(super) fn read(path: &Path) -> Result<Recorded, FileError> {
     })
 }
 
-/// Time in µs and attitude of one record; none where it is not finite or all zero.
+/// Time in µs and attitude of one record; `None` for an attitude that is not finite or all zero.
 fn row(data: &DataMessage<'_>) -> Result<(u64, Option<Packed>), String> {
     let format = data.flattened_format;
     let bytes = data.data;
