@@ -13,7 +13,7 @@ pub enum DelayKnown {
     Estimated,
     /// Given by the user.
     Given,
-    /// It was not.
+    /// Not determined.
     #[default]
     Unknown,
 }

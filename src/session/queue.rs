@@ -5,8 +5,8 @@ use crate::scene::Overload;
 use crate::wire::Packet;
 use std::collections::VecDeque;
 
-/// Packets that `drop-oldest` keeps for a link: 64 ms of a sensor at 1 kHz. The system's own buffers hold more, and
-/// older, packets.
+/// Packets that `drop-oldest` keeps for a link: 64 ms of a sensor at 1 kHz. Packets in the
+/// system's own buffers come on top, and are older.
 pub(super) const BACKLOG: usize = 64;
 
 /// A packet that is due, with its due time on the pacing thread's clock (or [`AT_ONCE`]).

@@ -96,7 +96,7 @@ impl Faults {
         }
     }
 
-    /// Of an encoder's samples, those that its packets here carry or replace, once for each time.
+    /// An encoder's samples after the faults: those that packets carry or replace, counted at each occurrence.
     pub fn account(&self, samples: ByKind<u64>) -> ByKind<u64> {
         std::array::from_fn(|i| samples[i] + self.added[i] - self.taken[i])
     }

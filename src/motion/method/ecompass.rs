@@ -9,10 +9,10 @@ const PARALLEL: f64 = 1e-6;
 /// Why two vectors give no attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Degenerate {
-    /// No vector shows up from down.
+    /// The force is zero or not finite: up is unknown.
     #[error("the specific force is zero (or not finite): up and down are undefined")]
     NoForce,
-    /// No vector shows the heading.
+    /// The field is zero or not finite: the heading is unknown.
     #[error("the magnetic field is zero (or not finite): heading is undefined")]
     NoField,
     /// Gravity and field are parallel, as at a magnetic pole.
