@@ -9,6 +9,7 @@
 //! # Ok::<(), ratetable::report::LimitError>(())
 //! ```
 
+mod answers;
 #[cfg(feature = "charts")]
 pub mod chart;
 mod heard;
@@ -19,6 +20,7 @@ mod text;
 mod times;
 mod timing;
 
+pub use answers::AnswersReport;
 pub use heard::{HeardLink, HeardReport, HeardSensor};
 pub use limit::{Limit, LimitError};
 pub use scored::{ScoreReport, Scored};
@@ -149,6 +151,8 @@ pub struct SensorReport {
     pub dropped: u64,
     /// Dropped samples that a newer one replaced, because packets are fewer than samples.
     pub replaced: u64,
+    /// Those of the sent that are in a packet as part of a mean, because packets are fewer than samples.
+    pub merged: u64,
     /// Samples still on their way when the run was stopped.
     pub queued: u64,
     /// Time just before the write call minus the due time, µs.
@@ -210,7 +214,7 @@ pub struct Interval {
 }
 
 /// Durations, µs.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
     /// Median.
     pub p50: f64,
@@ -258,6 +262,9 @@ pub struct LinkReport {
     /// Packets that each kind of fault on this output acted on; not part of `dropped`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub faults: BTreeMap<&'static str, u64>,
+    /// What came back during the scene, where the other side answers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub answers: Option<AnswersReport>,
     /// Damaged packets received.
     pub crc_errors: u64,
     /// Packets that the other side missed by their sequence numbers, if known.
@@ -276,6 +283,7 @@ impl LinkReport {
             overload: overload.into(),
             queue_bytes: Some(0),
             gaps: Some(Gaps::default()),
+            answers: Some(AnswersReport::shape()),
             faults: faults.map(|kind| (kind, 0)).collect(),
             ..LinkReport::default()
         }

@@ -15,6 +15,7 @@
 
 mod absence;
 mod account;
+mod answers;
 mod budget;
 mod command;
 mod control;

@@ -90,6 +90,62 @@ pub enum Controller {
     Inav,
 }
 
+impl Controller {
+    /// Whether it answers while the scene is played: with its attitude, or in lockstep.
+    pub(crate) const fn answers(self) -> bool {
+        match self {
+            Controller::Px4 | Controller::Px4Sitl | Controller::Inav => true,
+            Controller::Ardupilot => false,
+        }
+    }
+}
+
+/// What a packet carries of the samples since the packet before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Thin {
+    /// Their mean: no part of a rotation or of a change of velocity is lost between packets.
+    Mean,
+    /// The last of them. The others are dropped.
+    Last,
+}
+
+impl Thin {
+    /// As a scene spells them.
+    pub const NAMES: [&str; 2] = ["mean", "last"];
+
+    /// The one of this name; the last sample for any other.
+    pub fn from_name(name: &str) -> Thin {
+        if name == Thin::NAMES[0] { Thin::Mean } else { Thin::Last }
+    }
+}
+
+impl Options {
+    /// Whether packets carry means.
+    pub fn means(&self) -> bool {
+        self.thin.map_or(self.controller.is_some(), |thin| thin == Thin::Mean)
+    }
+}
+
+/// What a controller that keeps the last readings is left with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AtEnd {
+    /// It leaves the simulator: it disarms and returns to its own sensors.
+    #[default]
+    Leave,
+    /// It stays in the simulator, on the readings of a vehicle that has stopped.
+    Hold,
+}
+
+impl AtEnd {
+    /// As a scene spells them, the default first.
+    pub const NAMES: [&str; 2] = ["leave", "hold"];
+
+    /// The one of this name; the default for any other.
+    pub fn from_name(name: &str) -> AtEnd {
+        if name == AtEnd::NAMES[1] { AtEnd::Hold } else { AtEnd::Leave }
+    }
+}
+
 /// How a protocol lays out its packets, and which controller it talks to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
@@ -97,6 +153,11 @@ pub struct Options {
     pub layout: Option<Layout>,
     /// The controller whose variant the protocol follows.
     pub controller: Option<Controller>,
+    /// What packets carry of a sensor that is faster than they are; `None` is the mean for a controller, and otherwise the
+    /// last.
+    pub thin: Option<Thin>,
+    /// For `msp`: what its receiver is left with.
+    pub at_end: AtEnd,
     /// For `mavlink`: the version of its framing.
     pub version: Version,
     /// For `mavlink`: the messages to send beside HIL_SENSOR.
@@ -134,8 +195,9 @@ pub trait Encoder: Send {
     /// Appends the packets of the readings due now, and other messages of the protocol.
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>);
 
-    /// Appends the last packets for the other side: those of a vehicle that has stopped at `t`.
-    fn farewell(&mut self, _t: SimTime, _out: &mut Vec<Packet>) {}
+    /// Appends the last packets for the other side: those of a vehicle that stops where it is at the time of `end`, the
+    /// last moment that was sent.
+    fn farewell(&mut self, _end: &Truth, _out: &mut Vec<Packet>) {}
 
     /// Samples of each kind that no packet has carried yet.
     fn waiting(&self) -> ByKind<u64> {

@@ -116,7 +116,7 @@ fn warnings(plan: &Plan) -> Vec<String> {
         ));
     }
     for output in &plan.outputs {
-        warnings.extend(wire::warnings(output.to.protocol, &plan.sensors));
+        warnings.extend(wire::warnings(output.to.protocol, &output.wire, &plan.sensors));
     }
     let over = budgets(plan).into_iter().filter(|budget| !budget.fits());
     warnings.extend(over.map(|budget| budget.to_string()));

@@ -168,7 +168,7 @@ fn refuse(arguments: &Arguments, Job { plan, outputs, .. }: &Job) -> Result<(), 
     plan.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     for output in outputs {
         wire::check(output.to.protocol, &output.wire, &plan.sensors).map_err(Refusal)?;
-        wire::warnings(output.to.protocol, &plan.sensors)
+        wire::warnings(output.to.protocol, &output.wire, &plan.sensors)
             .iter()
             .for_each(|warning| tell(&format!("warning: {warning}")));
     }

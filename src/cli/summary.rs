@@ -1,10 +1,13 @@
 //! The report of a run as a person reads it.
 
 use crate::cli::terminal::Stream;
-use crate::report::{AttitudeReport, HeardReport, Report, number};
+use crate::report::{AnswersReport, AttitudeReport, HeardReport, Report, number};
 use crate::score::DelayKnown;
 use crate::session::Outcome;
 use crate::time::SimTime;
+
+/// The share of a scene that counts as all of it.
+const WHOLE: f64 = 0.995;
 
 /// Everything of a run on a screenful.
 pub fn run(report: &Report, outcome: &Outcome) -> String {
@@ -41,8 +44,11 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             gaps.samples
         );
     }
+    for (link, answers) in report.links.iter().filter_map(|link| Some((link, link.answers.as_ref()?))) {
+        text += &answered(&link.name, answers);
+    }
     if let Some(attitude) = &report.attitude {
-        text += &known(attitude);
+        text += &known(attitude, report.duration_s);
     }
     for link in report.links.iter().filter(|link| !link.faults.is_empty()) {
         let counts: Vec<_> = link.faults.iter().map(|(kind, packets)| format!("{kind} {packets}")).collect();
@@ -57,8 +63,24 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     text
 }
 
+/// What came back on a link.
+fn answered(name: &str, answers: &AnswersReport) -> String {
+    let gap = answers.gap_us.map_or(String::new(), |us| {
+        let [p50, p99, max] = [us.p50, us.p99, us.max].map(|us| number(us / 1000.0));
+        format!(", one every {p50} ms (p99 {p99}, longest {max})")
+    });
+    let mut text = format!("{name}: {}{gap}", answers.count());
+    if answers.silences > 0 {
+        text += &format!(", silent {}, {} s in all", times(answers.silences), number(answers.silent_s));
+    }
+    if answers.restarts > 0 {
+        text += &format!(", restarted {}", times(answers.restarts));
+    }
+    text + "\n"
+}
+
 /// How well somebody knew the attitude.
-fn known(AttitudeReport { estimator, figures }: &AttitudeReport) -> String {
+fn known(AttitudeReport { estimator, figures }: &AttitudeReport, duration_s: f64) -> String {
     let delay = match (figures.delay_ms, figures.delay_known, figures.delay_doubt) {
         (Some(ms), DelayKnown::Echoed, _) => format!(", answers {} ms after their sample", number(ms)),
         (Some(ms), ..) => {
@@ -78,6 +100,15 @@ fn known(AttitudeReport { estimator, figures }: &AttitudeReport) -> String {
         number(figures.errors.max_deg),
         figures.samples,
     );
+    if figures.coverage < WHOLE {
+        text += &format!(
+            "judged from {} s to {} s: {} % of the scene's {} s\n",
+            number(figures.from_s),
+            number(figures.to_s),
+            number(100.0 * figures.coverage),
+            number(duration_s)
+        );
+    }
     if let Some(looks) = &figures.looks {
         let without = figures
             .looks_rms_deg

@@ -39,6 +39,11 @@ impl Times {
         self.0.len()
     }
 
+    /// The mean, ns; 0 where nothing was counted.
+    pub fn mean_ns(&self) -> f64 {
+        self.0.mean()
+    }
+
     /// How many were longer than `ns`.
     pub fn above(&self, ns: i64) -> u64 {
         self.0.count_between(ns.max(0) as u64 + 1, LONGEST)

@@ -382,10 +382,7 @@ const REST: &[Case] = &[
         gyro!("[accel]\n[[output]]\nto = \"mpu@pty\"\nlayout = \"burst\"\n"),
         &[("4:1", "[accel] needs a rate")],
     ),
-    (
-        gyro!("[[output]]\nto = \"csv@-\"\nlayout = \"burst\"\n"),
-        &[("6:10", "only `mpu` has layouts, not `csv`")],
-    ),
+    (gyro!("[[output]]\nto = \"csv@-\"\nlayout = \"burst\"\n"), &[("6:10", "is for `mpu`, not for `csv`")]),
     (
         gyro!("[[output]]\nto = \"mpu@pty\"\nversion = 1\nmessages = []\n"),
         &[("6:11", "is for `mavlink`, not for `mpu`"), ("7:12", "is for `mavlink`, not for `mpu`")],

@@ -5,7 +5,7 @@ use super::suggest;
 use super::target::{TARGETS, Target};
 use crate::link::Address;
 use crate::sensor::SensorPlan;
-use crate::wire::{self, Extra, Extras, Layout, Protocol, Version};
+use crate::wire::{self, AtEnd, Extra, Extras, Layout, Protocol, Thin, Version};
 use std::fmt;
 use std::str::FromStr;
 
@@ -154,14 +154,17 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let to = section.text("to", None)?;
     let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
     let controller = to.target.map(|target| target.controller);
-    let wire = wire::Options { layout, version, extras, controller };
-    for key in ["version", "messages"] {
-        if section.has(key) && to.protocol != Protocol::Mavlink {
-            section.mistake(key, format!("is for `mavlink`, not for `{}`", to.protocol.name()));
+    let thin =
+        section.has("thin").then(|| Thin::from_name(section.word("thin", &Thin::NAMES, Thin::NAMES[1])));
+    let at_end = section.has("at_end").then(|| section.word("at_end", &AtEnd::NAMES, AtEnd::NAMES[0]));
+    let at_end = at_end.map_or(AtEnd::default(), AtEnd::from_name);
+    let wire = wire::Options { layout, version, extras, controller, at_end, thin };
+    for key in Protocol::own_keys().filter(|key| section.has(key)) {
+        let owners: Vec<_> = Protocol::owners(key).map(|it| format!("`{}`", it.name())).collect();
+        if !Protocol::owners(key).any(|it| it == to.protocol) {
+            let owners = owners.join(" and ");
+            section.mistake(key, format!("is for {owners}, not for `{}`", to.protocol.name()));
         }
-    }
-    if layout.is_some() && to.protocol != Protocol::Mpu {
-        section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
     }
     if let Some(Err(why)) = sensors.map(|sensors| wire::check(to.protocol, &wire, sensors)) {
         section.mistake(if extras == Extras::default() { "layout" } else { "messages" }, why);

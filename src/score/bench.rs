@@ -111,15 +111,15 @@ impl Bench<'_> {
         })
     }
 
-    /// All errors of a series, the number of estimates, and the share of the truth's time that they cover.
-    pub fn errors(&self, series: &Series, ahead: i64, frames: Frames) -> Option<(Errors, u64, f64)> {
+    /// All errors of a series, the number of estimates, and the part of the truth's time that they cover.
+    pub fn errors(&self, series: &Series, ahead: i64, frames: Frames) -> Option<(Errors, u64, Coverage)> {
         let (mut tally, mut covered) = (Tally::default(), Covered::new(series));
         for row in self.rows(series, ahead, frames) {
             covered.take(row.t.0);
             tally.add(&row.error, self.angles(&row));
         }
         let Options { from, until, settle, .. } = self.options;
-        (tally.count > 0).then(|| (tally.errors(), tally.count, covered.share((until - from - settle).0)))
+        (tally.count > 0).then(|| (tally.errors(), tally.count, covered.of((until - from - settle).0)))
     }
 
     /// The differences of roll, pitch and yaw in the estimate's own axes, rad in [−π, π].
@@ -131,27 +131,39 @@ impl Bench<'_> {
     }
 }
 
+/// Which part of the truth's time rows cover.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Coverage {
+    /// From 0 to 1, without gaps.
+    pub share: f64,
+    /// The first and the last row, ns.
+    pub ends: [i64; 2],
+}
+
 /// The time that rows cover.
 struct Covered {
     /// Rows further apart than this leave a gap, ns.
     gap: i64,
     interval: i64,
-    last: Option<i64>,
+    /// The first row and the last.
+    ends: Option<[i64; 2]>,
     sum: i64,
 }
 
 impl Covered {
     fn new(series: &Series) -> Covered {
         let interval = series.median_interval().unwrap_or(0).max(0);
-        Covered { gap: interval.saturating_mul(5).max(250_000_000), interval, last: None, sum: 0 }
+        Covered { gap: interval.saturating_mul(5).max(250_000_000), interval, ends: None, sum: 0 }
     }
 
     fn take(&mut self, t: i64) {
-        let step = self.last.replace(t).map_or(self.interval, |last| t.saturating_sub(last));
+        let step = self.ends.map_or(self.interval, |[_, last]| t.saturating_sub(last));
+        self.ends = Some([self.ends.map_or(t, |[first, _]| first), t]);
         self.sum += if (0..=self.gap).contains(&step) { step } else { self.interval };
     }
 
-    fn share(&self, of: i64) -> f64 {
-        (self.sum as f64 / of.max(1) as f64).min(1.0)
+    fn of(&self, whole: i64) -> Coverage {
+        let share = (self.sum as f64 / whole.max(1) as f64).min(1.0);
+        Coverage { share, ends: self.ends.unwrap_or_default() }
     }
 }

@@ -1,5 +1,19 @@
 //! Converts the other side's clock to ours.
 
+/// A clock that goes back by more than this was restarted, ns.
+const SET_BACK: i64 = 1_000_000_000;
+
+/// [`onto_ours`] for each run of a clock that restarts: each run has its own offset. A run that does not agree with our
+/// clock keeps its arrival times.
+pub(super) fn runs_onto_ours(own: &[i64], arrival: &[i64]) -> Vec<i64> {
+    let mut ours = Vec::with_capacity(own.len());
+    for run in own.chunk_by(|a, b| a.saturating_sub(*b) < SET_BACK) {
+        let arrived = &arrival[ours.len()..][..run.len()];
+        ours.extend(onto_ours(run, arrived).unwrap_or_else(|| arrived.to_vec()));
+    }
+    ours
+}
+
 /// Converts times of another clock to ours, ns: a straight line through (own, arrival). It removes offset and drift
 /// and leaves the mean transmission time in.
 ///
@@ -56,6 +70,24 @@ mod tests {
             // The mean transmission time is 5.5 ms.
             assert!((ours - held - 5_500_000).abs() < 300_000, "{} at {held}", ours - held);
         }
+    }
+
+    #[test]
+    fn a_clock_that_was_restarted_has_an_offset_of_its_own_in_each_run() {
+        let held: Vec<i64> = (0..2000).map(|k| k * 20_000_000).collect();
+        let own: Vec<i64> = held
+            .iter()
+            .map(|t| if *t < 17_000_000_000 { t + 90_000_000_000 } else { t - 16_000_000_000 })
+            .collect();
+        let arrival: Vec<i64> =
+            held.iter().enumerate().map(|(k, t)| t + 3_000_000 + (k as i64 * 7919 % 11) * 500_000).collect();
+        assert_eq!(onto_ours(&own, &arrival), None, "one line does not fit both");
+        for (ours, held) in runs_onto_ours(&own, &arrival).iter().zip(&held) {
+            assert!((ours - held - 5_500_000).abs() < 400_000, "{} at {held}", ours - held);
+        }
+        // Two estimates are no run to fit a line to: they keep their arrivals.
+        assert_eq!(runs_onto_ours(&[5_000_000_000, 0], &[1, 2]), [1, 2]);
+        assert!(runs_onto_ours(&[], &[]).is_empty());
     }
 
     #[test]

@@ -103,6 +103,10 @@ pub struct Figures {
     pub clock_certain: bool,
     /// The share of the truth's time that the estimates cover, from 0 to 1; gaps do not count.
     pub coverage: f64,
+    /// When the first judged estimate held, s of the truth's time.
+    pub from_s: f64,
+    /// When the last one held, s of the truth's time.
+    pub to_s: f64,
     /// The constant rotations that were removed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aligned: Option<Aligned>,

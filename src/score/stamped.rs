@@ -35,7 +35,7 @@ impl Stamped {
             HeldAt::Arrival => estimates[i].arrival.0,
         };
         let stamps: Vec<i64> = of.iter().map(stamp).collect();
-        let times = if most == 1 { clock::onto_ours(&stamps, &arrivals).unwrap_or(arrivals) } else { stamps };
+        let times = if most == 1 { clock::runs_onto_ours(&stamps, &arrivals) } else { stamps };
         Stamped { of, times, is_echoed: most == 0 }
     }
 

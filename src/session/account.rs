@@ -34,6 +34,7 @@ impl Account {
             sent: all.sent,
             dropped: all.dropped,
             replaced: all.replaced,
+            merged: all.merged,
             queued: sum(|it, kind| it.left.samples[kind] + it.made.waiting[kind]),
             late_us: all.late.late().filter(|_| paced),
             interval_us: all.interval.interval().filter(|_| paced),

@@ -23,6 +23,7 @@ use super::watch::Watching;
 use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, step};
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
+use crate::motion::Truth;
 use crate::time::SimTime;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -113,7 +114,8 @@ impl Control {
         for output in &job.outputs {
             outputs.push(OpenOutput::open(output).await?);
         }
-        let sides = outputs.iter_mut().map(|it| Side::new(&it.output, it.link.sender())).collect();
+        let paced = job.speed.is_paced();
+        let sides = outputs.iter_mut().map(|it| Side::new(&it.output, it.link.sender(), paced)).collect();
         let shared = Arc::new(Shared::before(job.rest));
         let lockstep = job.outputs.iter().any(step::in_lockstep);
         let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
@@ -339,12 +341,19 @@ impl Control {
 
     /// Sends every other side a stationary vehicle as farewell, and everything that is still kept.
     async fn take_leave(&self, lanes: &mut [Lane], feeds: &mut [Feed]) {
-        let t = self.shared.sent() + SimTime(1);
+        let end = self.sent_last();
         let deadline = Instant::now() + FAREWELL;
         for (lane, feed) in lanes.iter_mut().zip(feeds) {
-            lane.take_leave(feed.farewell(t), deadline).await;
+            lane.take_leave(feed.farewell(&end), deadline).await;
         }
         lanes.iter_mut().for_each(Lane::finish);
+    }
+
+    /// Where the vehicle was in the last packet sent, a nanosecond on. The producer is ahead of that by up to a ring.
+    fn sent_last(&self) -> Truth {
+        let sent = self.shared.sent();
+        let t = self.shared.scene_time(sent).unwrap_or_default().min(self.job.end);
+        Truth { t: sent + SimTime(1), ..self.job.plan.trajectory.at(t) }
     }
 
     /// The end of the scene if everything was played, else the due time of the last packet.

@@ -1,5 +1,6 @@
 //! The producer thread's half of an output.
 
+use crate::motion::Truth;
 use crate::player::Moment;
 use crate::scene::{Output, Plan};
 use crate::sensor::ByKind;
@@ -92,10 +93,10 @@ impl Feed {
         &self.newest
     }
 
-    /// Packets that show the other side a vehicle that has stopped at `t`; they are not part of the stream.
-    pub(super) fn farewell(&mut self, t: SimTime) -> &[Packet] {
+    /// Packets that show the other side a vehicle that stops where it is at `end`; they are not part of the stream.
+    pub(super) fn farewell(&mut self, end: &Truth) -> &[Packet] {
         self.newest.clear();
-        self.encoder.farewell(t, &mut self.newest);
+        self.encoder.farewell(end, &mut self.newest);
         &self.newest
     }
 

@@ -43,6 +43,11 @@ impl Heard {
         Heard { plan, shared, speed, lockstep, newest: None }
     }
 
+    /// Scene time at `now`, ns on the run's clock; `None` before the scene.
+    pub(super) fn scene_time(&self, now: i64) -> Option<SimTime> {
+        self.shared.scene_time(self.stream_time(now))
+    }
+
     /// Whether the time at which an estimate held can be known. At full speed an arrival time says nothing: seconds
     /// of the stream may still be in the buffers.
     pub(super) fn is_timed(&self, estimate: &Estimate) -> bool {

@@ -9,7 +9,7 @@ use super::left::Left;
 use super::pace::{Pace, Speed};
 use super::queue::{Due, Queue};
 use super::replies::{Replied, Replies};
-use super::step::{Step, Turn};
+use super::step::{self, Step, Turn};
 use super::tally::{SensorTally, Tally};
 use crate::clock::Clock;
 use crate::link::{Sender, Sent};
@@ -161,6 +161,9 @@ impl Lane {
         match sent {
             Sent::Done => {
                 self.tally.sent(&it.packet, before, it.late(before), pace.clock.now() - before);
+                if pace.shared.scene_time(it.packet.due).is_some() {
+                    self.tally.in_scene(before, self.step.is_none() || step::is_answered(it.packet.carries));
+                }
                 pace.shared.packets.add(1);
                 self.forget_replaced(&it.packet, pace);
                 pace.record_sent(&it.packet, it.due, before);

@@ -118,6 +118,7 @@ impl OpenOutput {
             gaps: tally.gaps.report(),
             replies: tally.replies + side.replies(),
             faults: made.by_fault(&self.output),
+            answers: side.report(tally),
             crc_errors: side.damaged(),
             broken: self.broken(account),
             ..LinkReport::default()

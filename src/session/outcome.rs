@@ -4,7 +4,7 @@ use super::host::host;
 use super::pace::Speed;
 use super::watch::Watched;
 use crate::geometry::Attitude;
-use crate::report::{AttitudeReport, Host, Limit, LinkReport, PacingReport, Report, SensorReport};
+use crate::report::{AttitudeReport, Host, Limit, LinkReport, PacingReport, Report, SensorReport, number};
 use crate::scene::{Destination, Plan};
 use crate::score::Figures;
 use crate::time::SimTime;
@@ -73,6 +73,7 @@ impl Outcome {
             .extend(broken.filter_map(|link| Some(format!("{} broke: {}", link.to, link.broken.as_ref()?))));
         let code = self.command.filter(|code| *code != 0);
         failed.extend(code.map(|code| format!("the command ended with exit code {code}")));
+        failed.extend(report.links.iter().filter_map(silent));
         let nothing = report.links.iter().all(|link| link.packets == 0);
         if self.command == Some(0) && nothing {
             failed.push("the command ended before anything was sent: it must open the link, {} in its arguments or $RATETABLE_LINK".into());
@@ -90,6 +91,19 @@ impl Outcome {
     pub fn unwritten(&self) -> Option<&str> {
         let refused = |link: &&LinkReport| is_stdout(link) && !is_enough(link);
         self.links.iter().filter(refused).find_map(|link| link.broken.as_deref())
+    }
+}
+
+/// What went wrong with the answers on a link: none came, or no more came.
+fn silent(link: &LinkReport) -> Option<String> {
+    let answers = link.answers.as_ref().filter(|_| link.packets > 0)?;
+    let count = answers.count();
+    match answers.stopped_at_s {
+        Some(t) => Some(format!("{} stopped answering at {} s of the scene: {count}", link.to, number(t))),
+        None if answers.received == 0 => {
+            Some(format!("{} never answered during the scene: {count}", link.to))
+        }
+        None => None,
     }
 }
 

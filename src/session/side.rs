@@ -1,11 +1,16 @@
 //! The conversation with one other side: who it is, what it sent, and how it gets replies.
 
+use super::answers::Answers;
 use super::lane::Lane;
 use super::replies::Way;
 use super::step::{Step, in_lockstep};
+use super::tally::Tally;
 use crate::link::Sender;
+use crate::report::AnswersReport;
 use crate::scene::Output;
 use crate::score::Timed;
+use crate::time::SimTime;
+use crate::wire::Controller;
 use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,20 +23,33 @@ pub(super) struct Side {
     /// Bytes received, and the messages in them.
     pub bytes: u64,
     pub messages: u64,
+    pub answers: Answers,
+    /// As the user asked for it: `inav@/dev/ttyACM0`.
+    pub to: String,
     protocol: &'static str,
+    /// Whether a controller of its make answers while the scene is played.
+    must_answer: bool,
+    lockstep: bool,
+    /// Whether a silence means anything.
+    timed: bool,
     way: Way,
     /// In lockstep: the number of packets it has read.
     took: Arc<AtomicU64>,
 }
 
 impl Side {
-    /// The other side of an output; `sender` is the way to its link.
-    pub(super) fn new(output: &Output, sender: Sender) -> Side {
+    /// The other side of an output; `sender` is the way to its link. `paced` is whether wall time means anything.
+    pub(super) fn new(output: &Output, sender: Sender, paced: bool) -> Side {
         Side {
             dialogue: output.to.protocol.dialogue(output.wire.controller),
             estimates: Vec::new(),
             bytes: 0,
             messages: 0,
+            answers: Answers::default(),
+            to: output.to.to_string(),
+            must_answer: output.wire.controller.is_some_and(Controller::answers),
+            lockstep: in_lockstep(output),
+            timed: paced || in_lockstep(output),
             protocol: output.to.protocol.name(),
             way: Way::Link(sender, 0),
             took: Arc::default(),
@@ -46,6 +64,27 @@ impl Side {
     /// Counts another packet as read.
     pub(super) fn took(&mut self) {
         self.took.fetch_add(1, Ordering::Release);
+    }
+
+    /// Counts an answer that came at `now`, ns, at that scene time: an acknowledgement, or an estimate. In lockstep only
+    /// acknowledgements count. Returns a notice.
+    pub(super) fn answered(&mut self, acknowledges: bool, now: i64, t: Option<SimTime>) -> Option<String> {
+        let counts = acknowledges == self.lockstep;
+        counts.then(|| self.answers.take(now, t)).flatten()
+    }
+
+    /// Looks at `now`, ns, whether answers stay away. Returns a notice.
+    pub(super) fn look(&mut self, now: i64) -> Option<String> {
+        self.timed.then(|| self.answers.look(now)).flatten()
+    }
+
+    /// What came back during the scene, given what went out; `None` of an other side that does not answer.
+    pub(super) fn report(&self, tally: &Tally) -> Option<AnswersReport> {
+        let (span, end) = tally.scene();
+        let each = self.lockstep || self.dialogue.as_ref().is_some_and(|it| it.answers_every_packet());
+        let mut report = self.answers.report(Some(tally.asked).filter(|_| each), span, end)?;
+        report.stopped_at_s = report.stopped_at_s.filter(|_| self.timed);
+        (self.must_answer || report.received > 0).then_some(report)
     }
 
     /// The counter of packets that it has read.

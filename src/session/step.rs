@@ -116,6 +116,7 @@ impl Mode {
     }
 }
 
-fn is_answered(carries: Kinds) -> bool {
+/// Whether the other side answers a packet that carries these kinds.
+pub(super) fn is_answered(carries: Kinds) -> bool {
     !(ANSWERED & carries).is_empty()
 }

@@ -50,6 +50,8 @@ impl Talk {
     pub(super) fn tick(&mut self, now: i64) {
         for link in 0..self.sides.len() {
             self.converse(link, |dialogue, talk| dialogue.tick(now, &mut |said| talk.said(link, said, now)));
+            let side = &mut self.sides[link];
+            self.notices.extend(side.look(now).map(|notice| format!("{}: {notice}", side.to)));
         }
     }
 
@@ -62,6 +64,12 @@ impl Talk {
 
     fn said(&mut self, link: usize, said: Said<'_>, now: i64) {
         let side = &mut self.sides[link];
+        let answer = match &said {
+            Said::Estimate(_) => side.answered(false, now, self.heard.scene_time(now)),
+            Said::Took => side.answered(true, now, self.heard.scene_time(now)),
+            _ => None,
+        };
+        self.notices.extend(answer.map(|notice| format!("{}: {notice}", side.to)));
         match said {
             Said::Estimate(estimate) if self.heard.is_timed(&estimate) => {
                 side.estimates.extend(self.heard.take_in(estimate, now));
@@ -79,6 +87,10 @@ impl Talk {
                 }
             }
             Said::Notice(text) => self.notices.push(text),
+            Said::Restart(text) => {
+                side.answers.restarts += 1;
+                self.notices.push(text);
+            }
             Said::Pass(frame) => {
                 if let Some((sender, _)) = self.ground.as_mut().filter(|(_, with)| *with == link) {
                     // A ground station that is absent or too slow misses it.

@@ -12,6 +12,8 @@ pub(super) struct SensorTally {
     pub dropped: u64,
     /// Dropped samples that a newer one replaced.
     pub replaced: u64,
+    /// Those of the sent that are in a packet as part of a mean.
+    pub merged: u64,
     /// When the last one was sent, unless a pause followed.
     last: Option<i64>,
     /// Time from first to last of each stretch without a pause, summed, ns.
@@ -43,6 +45,7 @@ impl SensorTally {
         self.sent += other.sent;
         self.dropped += other.dropped;
         self.replaced += other.replaced;
+        self.merged += other.merged;
         self.late.add(&other.late);
         self.interval.add(&other.interval);
         self.write.add(&other.write);
@@ -77,6 +80,10 @@ pub(super) struct Tally {
     pub replies: u64,
     pub sensors: ByKind<SensorTally>,
     pub gaps: Gaps,
+    /// Packets of the scene that the other side answers, where it answers each.
+    pub asked: u64,
+    /// When the scene's first packet was sent, ns.
+    scene_began: Option<i64>,
     /// When its first and last packets were sent, ns, and the bytes of the last.
     first: i64,
     last: i64,
@@ -96,6 +103,23 @@ impl Tally {
         for kind in packet.carries.iter() {
             self.sensors[kind as usize].sent(now, late, write);
         }
+        if packet.merges {
+            for (sensor, merged) in self.sensors.iter_mut().zip(packet.replaced) {
+                sensor.sent += u64::from(merged);
+                sensor.merged += u64::from(merged);
+            }
+        }
+    }
+
+    /// Counts the packet sent at `now` as one of the scene; `asks` is whether the other side answers such packets.
+    pub(super) fn in_scene(&mut self, now: i64, asks: bool) {
+        self.scene_began.get_or_insert(now);
+        self.asked += u64::from(asks);
+    }
+
+    /// How long the scene was sent, and when its last packet went out, ns.
+    pub(super) fn scene(&self) -> (i64, i64) {
+        (self.scene_began.map_or(0, |began| self.last - began), self.last)
     }
 
     /// Counts a packet as dropped; returns its number of samples.
@@ -103,7 +127,13 @@ impl Tally {
         for kind in packet.carries.iter() {
             self.sensors[kind as usize].dropped += 1;
         }
-        let samples = packet.carries.len() as u64;
+        let mut samples = packet.carries.len() as u64;
+        if packet.merges {
+            for (sensor, merged) in self.sensors.iter_mut().zip(packet.replaced) {
+                sensor.dropped += u64::from(merged);
+                samples += u64::from(merged);
+            }
+        }
         self.dropped += 1;
         self.gaps.lost(samples);
         samples
@@ -111,6 +141,9 @@ impl Tally {
 
     /// Counts the samples that newer ones replaced before this packet as dropped; returns how many.
     pub(super) fn replaced(&mut self, packet: &Packet) -> u64 {
+        if packet.merges {
+            return 0;
+        }
         let pairs = self.sensors.iter_mut().zip(packet.replaced);
         pairs
             .map(|(sensor, replaced)| {

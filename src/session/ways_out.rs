@@ -70,7 +70,9 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L>
             }
         }
         // Packets that leave samples out are no way out.
-        let carries_all = |protocol: &Protocol| wire::warnings(*protocol, &self.plan.sensors).is_empty();
+        let carries_all = |protocol: &Protocol| {
+            wire::warnings(*protocol, &wire::Options::default(), &self.plan.sensors).is_empty()
+        };
         for protocol in Protocol::ALL.into_iter().filter(|it| *it != here && carries_all(it)) {
             others.push((protocol.name().into(), self.bytes(protocol, wire::Options::default())));
         }

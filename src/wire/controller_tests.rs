@@ -241,8 +241,12 @@ fn ahrs_packets_carry_the_truth_fifty_times_a_second() {
 
 /// A ramp of the gyro's x whose value tells the millisecond of a sample.
 fn ramp(protocol: Protocol, gyro: Rate, peer: Peer) -> Vec<Packet> {
+    ramp_with(Options::default(), protocol, gyro, peer)
+}
+
+fn ramp_with(options: Options, protocol: Protocol, gyro: Rate, peer: Peer) -> Vec<Packet> {
     let plan = plan(&format!("duration = \"9 s\"\n{}", EXACT.replacen("100 Hz", &format!("{gyro}"), 1)));
-    let mut encoder = encoder(protocol, &Setup { peer, ..setup(&plan, None) });
+    let mut encoder = encoder(protocol, &Setup { peer, options, ..setup(&plan, None) });
     let mut packets = Vec::new();
     for t in (0..).map(|k| gyro.tick(k)).take_while(|t| t.0 < 2 * NANOS) {
         let value = Vector::new((t.0 / 1_000_000) as f64 * 1e-3, 0.0, 0.0);
@@ -271,6 +275,51 @@ fn imu_packets_come_evenly_at_the_rate_asked_for_with_the_newest_sample_then() {
     }
 }
 
+/// The integral of what is sent is that of what was sampled: nothing of a turn is lost between packets.
+#[test]
+fn packets_for_a_controller_carry_the_mean_of_the_samples_since_the_one_before() {
+    let target = Options { controller: Some(Controller::Ardupilot), ..Options::default() };
+    let asked = Options { thin: Some(Thin::Mean), ..Options::default() };
+    let last = Options { thin: Some(Thin::Last), ..target };
+    for (options, gyro, asked, means) in [
+        (target, 1000, 100, true),
+        (asked, 333, 100, true),
+        (target, 50, 200, true),
+        (last, 1000, 100, false),
+    ] {
+        let (gyro, asked) = (Rate::hz(gyro), Rate::hz(asked));
+        let peer = Peer { rate: Some(asked), ..Peer::default() };
+        let packets = ramp_with(options, Protocol::Vectornav, gyro, peer);
+        let (imus, _) = outputs(&packets);
+        let (mut next, mut sent, mut sampled) = (0, 0.0, 0.0);
+        for (packet, imu) in packets.iter().zip(&imus) {
+            let until = gyro.ticks_before(SimTime::ZERO, SimTime(packet.due.0 + 1));
+            let samples = (next..until).map(|k| (gyro.tick(k).0 / 1_000_000) as f64 * 1e-3);
+            let (count, sum) = ((until - next) as f64, samples.sum::<f64>());
+            assert_eq!(u64::from(packet.replaced[0]), (until - next).saturating_sub(1));
+            assert_eq!(packet.merges, means && packet.replaced[0] > 0);
+            sent += f64::from(imu.gyro[0]) * count;
+            sampled += sum;
+            next = until;
+        }
+        let off = (sent - sampled).abs() / sampled;
+        assert_eq!(off < 1e-6, means || asked.as_hz() > gyro.as_hz(), "{gyro} {asked}: {off}");
+    }
+    // A barometer's too, and 2.5 samples a packet are 2 and 3 in turn.
+    let mut newest = Newest::new(&target);
+    let mut press = |pascals: f64| {
+        let mut reading = Reading::zero(0, SensorKind::Baro);
+        reading.measurement = crate::sensor::Measurement::Pressure(crate::sensor::Measured {
+            value: pascals,
+            truth: 0.0,
+            bias: 0.0,
+        });
+        newest.take_in(&[reading]);
+        newest.told.pressure(SensorKind::Baro).unwrap()
+    };
+    assert_eq!([press(100.0), press(200.0), press(600.0)], [100.0, 150.0, 300.0]);
+}
+
 #[test]
 fn msp_sends_a_hundred_packets_a_second_at_most_and_says_what_is_left_out() {
     for (gyro, rate) in [(1000, 100), (333, 100), (100, 100), (50, 50)] {
@@ -288,7 +337,7 @@ fn msp_sends_a_hundred_packets_a_second_at_most_and_says_what_is_left_out() {
             assert!((f64::from(seen.gyro[0]) - expected).abs() <= 0.5);
         }
         let plan = plan(&format!("duration = \"1 s\"\n[gyro]\nrate = \"{gyro} Hz\"\n"));
-        let warnings = warnings(Protocol::Msp, &plan.sensors);
+        let warnings = warnings(Protocol::Msp, &Options::default(), &plan.sensors);
         assert_eq!(warnings.len(), usize::from(gyro > 100), "{warnings:?}");
         assert!(warnings.iter().all(|warning| warning.contains("a rate of 100 Hz fits")), "{warnings:?}");
         let (_, packets_per_s) = load(Protocol::Msp, &setup(&plan, None));
@@ -306,7 +355,7 @@ fn the_last_packet_is_that_of_a_vehicle_that_has_stopped() {
     for protocol in [Protocol::Msp, Protocol::Vectornav, Protocol::Mip] {
         let mut encoder = encoder(protocol, &setup(&plan, None));
         let mut packets = Vec::new();
-        encoder.farewell(end, &mut packets);
+        encoder.farewell(&at_rest(end), &mut packets);
         assert!(packets.is_empty(), "who has not been played to keeps what they have");
         let mut last = at_rest(SimTime::ZERO);
         let _: Result<(), ()> = Player::new(&plan, plan.duration, 64).play(|moment| {
@@ -316,8 +365,13 @@ fn the_last_packet_is_that_of_a_vehicle_that_has_stopped() {
             Ok(())
         });
         packets.clear();
-        encoder.farewell(end, &mut packets);
-        let [packet] = &packets[..] else { panic!("one packet") };
+        // Half-way: what was made is ahead of what was sent.
+        let sent = Truth { t: end, ..plan.trajectory.at(SimTime(NANOS / 2)) };
+        assert!(last.attitude.angle_to(sent.attitude) > 1.0, "the scene's end is another attitude");
+        last = sent;
+        encoder.farewell(&sent, &mut packets);
+        let (packet, leaves) = packets.split_first().expect("a packet");
+        assert_eq!(leaves.len(), usize::from(protocol == Protocol::Msp), "and INAV is told to leave");
         assert_eq!((packet.due, packet.carries), (end, Kinds::NONE));
         let up = last.attitude.inverse().apply(Vector::new(0.0, 0.0, -STANDARD_GRAVITY)).v.to_array();
         let field = last.field.v.to_array();

@@ -22,6 +22,8 @@ pub enum Said<'a> {
     Took,
     /// A notice for the user, given once.
     Notice(String),
+    /// It has restarted: a notice for the user.
+    Restart(String),
     /// A whole message of the other side for a ground station.
     Pass(&'a [u8]),
 }
@@ -83,6 +85,11 @@ pub trait Dialogue: Send {
     /// What is known of the other side.
     fn peer(&self) -> Peer {
         Peer::default()
+    }
+
+    /// Whether it answers every packet of the stream.
+    fn answers_every_packet(&self) -> bool {
+        false
     }
 
     /// Damaged packets, and runs of bytes that are no packet.

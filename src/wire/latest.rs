@@ -33,7 +33,12 @@ impl Latest {
         });
         let wanted = rate(own);
         let beat = Ticks { rate: if wanted == own { clock } else { wanted }, phase };
-        Latest { newest: Newest::default(), carrier: carrier.map(|sensor| sensor.kind), beat, next: 0 }
+        Latest {
+            newest: Newest::new(&setup.options),
+            carrier: carrier.map(|sensor| sensor.kind),
+            beat,
+            next: 0,
+        }
     }
 
     /// Takes the readings due at `t` and appends the packets due up to then; `write` makes the bytes of a packet
@@ -77,7 +82,8 @@ impl Latest {
         self.beat.phase + self.beat.rate.tick(self.next)
     }
 
-    fn has_begun(&self) -> bool {
+    /// Whether the sensor that begins the stream has ticked.
+    pub(super) fn has_begun(&self) -> bool {
         self.carrier.is_some_and(|kind| self.newest.told.has(kind))
     }
 }

@@ -33,6 +33,7 @@ pub(super) static ROW: Row = Row {
     },
     dialogue: |controller| Some(Box::new(dialogue::Mavlink::new(controller))),
     shared: |first| Some(Shared::at_ticks("HIL_SENSOR", KINDS, first)),
+    keys: &["version", "messages", "thin"],
     check: |options, _| {
         let px4 = matches!(options.controller, Some(Controller::Px4 | Controller::Px4Sitl));
         let truth = options.extras.iter().find(|extra| px4 && extra.is_truth());
@@ -109,7 +110,7 @@ impl Mavlink {
             seconds: EverySecond::default(),
             extras: setup.options.extras.iter().map(Sender::new).collect(),
             counts: super::mpu::counts(setup.sensors),
-            newest: Newest::default(),
+            newest: Newest::new(&setup.options),
             carrier: setup.sensors.iter().map(|sensor| sensor.kind).find(|kind| KINDS.contains(*kind)),
             claims: setup
                 .sensors

@@ -14,7 +14,6 @@ use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::earth::STANDARD_GRAVITY;
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Kinds, SensorKind};
-use crate::time::SimTime;
 use ratetable_protocols::mip::{self, imu};
 
 pub(super) static ROW: Row = Row {
@@ -25,6 +24,7 @@ pub(super) static ROW: Row = Row {
     reader: |_| Box::new(reader::Reader::default()),
     dialogue: |_| None,
     shared: |first| Some(Shared::at_ticks("a packet", CARRIED, first)),
+    keys: &["thin"],
     check: any,
     greeting: |_| vec![0],
     is_numbered: false,
@@ -35,34 +35,34 @@ pub(super) static ROW: Row = Row {
 pub(super) struct Mip {
     latest: Latest,
     kinds: Vec<SensorKind>,
-    last: Option<Truth>,
 }
 
 impl Mip {
     pub(super) fn new(setup: &Setup<'_>) -> Mip {
         let kinds = setup.sensors.iter().map(|sensor| sensor.kind).collect();
-        Mip { latest: Latest::new(setup, |own| own), kinds, last: None }
+        Mip { latest: Latest::new(setup, |own| own), kinds }
     }
 }
 
 impl Encoder for Mip {
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
-        self.last = Some(*now.truth);
         let mut buffer = [0; mip::MAX_LEN];
         self.latest.encode(now.t, now.readings, out, &mut buffer, |_, newest, buffer| write(newest, buffer));
     }
 
-    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
-        let Some(truth) = &self.last else { return };
+    fn farewell(&mut self, end: &Truth, out: &mut Vec<Packet>) {
+        if !self.latest.has_begun() {
+            return;
+        }
         let mut still = *self.latest.newest();
         for (kind, value) in
-            [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
+            [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(end))
         {
             still.put(kind, self.kinds.contains(&kind).then_some(value));
         }
         let mut buffer = [0; mip::MAX_LEN];
         let len = write(&still, &mut buffer);
-        out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
+        out.push(Packet::new(end.t, Kinds::NONE, &buffer[..len]));
     }
 
     fn waiting(&self) -> ByKind<u64> {

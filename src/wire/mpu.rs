@@ -22,6 +22,7 @@ pub(super) static ROW: Row = Row {
     reader: |assumed| Box::new(reader::Reader::new(assumed.mounts)),
     dialogue: |_| Some(Box::new(dialogue::Answers::new())),
     shared: |_| None,
+    keys: &["layout"],
     check: |options, sensors| {
         let has = |kind| sensors.iter().any(|sensor| sensor.kind == kind);
         match options.layout {
@@ -69,7 +70,7 @@ impl Mpu {
         Mpu {
             seq: 0,
             seconds: EverySecond::default(),
-            newest: Newest::default(),
+            newest: Newest::new(&setup.options),
             config: config::Repr {
                 who_am_i: chip.who_am_i(),
                 smplrt_div,

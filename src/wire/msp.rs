@@ -9,12 +9,12 @@ mod reader;
 
 use super::latest::{CARRIED, Latest, pascals};
 use super::row::{Row, Shared, any};
-use super::{Encoder, Now, Packet, Setup, stopped};
+use super::{AtEnd, Encoder, Now, Packet, Setup, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
 use crate::geometry::{Body, Nav, Vector};
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
-use crate::time::{Rate, SimTime};
+use crate::time::Rate;
 use ratetable_protocols::msp::{self, Message, simulator};
 
 pub(super) static ROW: Row = Row {
@@ -36,6 +36,7 @@ pub(super) static ROW: Row = Row {
             false => Shared::at_ticks("a packet", CARRIED, first),
         })
     },
+    keys: &["at_end", "thin"],
     check: any,
     greeting: |_| reader::question(),
     is_numbered: false,
@@ -55,12 +56,15 @@ pub(super) const ACCEL_SCALE: f64 = 1000.0;
 
 const FLAGS: u8 = simulator::ENABLE | simulator::BATTERY | simulator::MUTE | simulator::OWN_ESTIMATE;
 
+/// Without a flag INAV leaves the simulator: it disarms and returns to its own sensors (`fc_msp.c`, read).
+const LEAVE: u8 = 0;
+
 pub(super) struct Msp {
     latest: Latest,
     /// The present readings, with the field turned.
     turned: Vec<Reading>,
-    last: Option<Truth>,
     has_mag: bool,
+    at_end: AtEnd,
 }
 
 impl Msp {
@@ -69,7 +73,7 @@ impl Msp {
         Msp {
             latest: Latest::new(setup, at_most),
             turned: Vec::with_capacity(setup.sensors.len()),
-            last: None,
+            at_end: setup.options.at_end,
             has_mag: setup.sensors.iter().any(|sensor| sensor.kind == SensorKind::Mag),
         }
     }
@@ -85,7 +89,6 @@ impl Encoder for Msp {
             }
             _ => *reading,
         }));
-        self.last = Some(*now.truth);
         let strength = now.truth.field.length();
         let mut buffer = [0; msp::MAX_LEN];
         self.latest.encode(now.t, &self.turned, out, &mut buffer, |_, newest, buffer| {
@@ -99,13 +102,21 @@ impl Encoder for Msp {
         });
     }
 
-    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
-        let Some(truth) = &self.last else { return };
-        let [gyro, accel, field] = stopped(truth);
-        let mag = if self.has_mag { field + to_true_north(truth) } else { Vector::ZERO };
+    fn farewell(&mut self, end: &Truth, out: &mut Vec<Packet>) {
+        if !self.latest.has_begun() {
+            return;
+        }
+        let [gyro, accel, field] = stopped(end);
+        let mag = if self.has_mag { field + to_true_north(end) } else { Vector::ZERO };
         let mut buffer = [0; msp::MAX_LEN];
-        let len = frame([gyro, accel, mag], truth.field.length(), pascals(self.latest.newest()), &mut buffer);
-        out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
+        let len = frame([gyro, accel, mag], end.field.length(), pascals(self.latest.newest()), &mut buffer);
+        out.push(Packet::new(end.t, Kinds::NONE, &buffer[..len]));
+        if self.at_end == AtEnd::Leave {
+            // MAX_LEN holds every frame.
+            let message = simulator::Repr { version: simulator::VERSION, flags: LEAVE, ..Default::default() };
+            let len = msp::encode(&Message::Simulator(message), &mut buffer).unwrap_or(0);
+            out.push(Packet::new(end.t, Kinds::NONE, &buffer[..len]));
+        }
     }
 
     fn waiting(&self) -> ByKind<u64> {

@@ -1,7 +1,7 @@
 //! The newest sample of each sensor, for packets that carry several.
 
-use super::Packet;
 use super::samples::Sensed;
+use super::{Options, Packet};
 use crate::geometry::{Body, Vector};
 use crate::sensor::{ByKind, Kinds, Measurement, REFERENCE_TEMPERATURE, Reading, SensorKind};
 use crate::time::SimTime;
@@ -36,6 +36,20 @@ impl Told {
         self.0[kind as usize] = body.map(|body| (Sensed::Body(body), REFERENCE_TEMPERATURE));
     }
 
+    /// Makes a reading the `n`th of a mean.
+    fn merge(&mut self, reading: &Reading, n: u32) {
+        let share = 1.0 / f64::from(n);
+        match (&mut self.0[reading.kind as usize], &reading.measurement) {
+            (Some((Sensed::Body(mean), _)), Measurement::Triad(triad)) => {
+                mean.v += (triad.value.v - mean.v) * share;
+            }
+            (Some((Sensed::Pressure(mean), _)), Measurement::Pressure(pressure)) => {
+                *mean += (pressure.value - *mean) * share;
+            }
+            _ => self.take_in(reading),
+        }
+    }
+
     fn take_in(&mut self, reading: &Reading) {
         let said = match &reading.measurement {
             Measurement::Triad(triad) => Sensed::Body(triad.value),
@@ -51,21 +65,33 @@ impl Told {
 pub(super) struct Newest {
     pub told: Told,
     pub fresh: Kinds,
+    /// Whether a packet carries the mean of the samples since the packet before, not the last of them.
+    means: bool,
     /// The kinds whose samples a newer one replaced before a packet carried them, and their counts.
     thinned: Kinds,
     replaced: ByKind<u32>,
 }
 
 impl Newest {
+    /// For packets with these options.
+    pub fn new(options: &Options) -> Newest {
+        Newest { means: options.means(), ..Newest::default() }
+    }
+
     pub fn take_in(&mut self, readings: &[Reading]) {
         for reading in readings {
             let i = reading.kind as usize;
-            if self.fresh.contains(reading.kind) {
-                self.replaced[i] = self.replaced[i].saturating_add(1);
-                self.thinned.insert(reading.kind);
+            if !self.fresh.contains(reading.kind) {
+                self.fresh.insert(reading.kind);
+                self.told.take_in(reading);
+                continue;
             }
-            self.fresh.insert(reading.kind);
-            self.told.take_in(reading);
+            self.replaced[i] = self.replaced[i].saturating_add(1);
+            self.thinned.insert(reading.kind);
+            match self.means {
+                true => self.told.merge(reading, self.replaced[i].saturating_add(1)),
+                false => self.told.take_in(reading),
+            }
         }
     }
 
@@ -83,6 +109,7 @@ impl Newest {
                 packet.replaced[kind as usize] = std::mem::take(&mut self.replaced[kind as usize]);
             }
             self.thinned.remove(thinned);
+            packet.merges = self.means;
         }
         self.fresh.remove(kinds);
         packet

@@ -16,6 +16,8 @@ pub struct Packet {
     pub carries: Kinds,
     /// Samples of each kind that a newer one replaced before any packet carried them.
     pub replaced: ByKind<u32>,
+    /// Whether those are in it all the same: it carries the mean.
+    pub merges: bool,
     /// How many of its bytes go out at once, with the others a little later; 0 = all of them. For a packet without
     /// bytes: how many bytes of the previous packet go out then.
     pub piece: u16,
@@ -33,6 +35,7 @@ impl Packet {
             due,
             carries,
             replaced: ByKind::default(),
+            merges: false,
             piece: 0,
             len: len as u16,
             bytes: [0; MAX_PACKET],

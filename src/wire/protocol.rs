@@ -3,8 +3,8 @@
 use super::dialogue::Dialogue;
 use super::row::Row;
 use super::{Controller, Encoder, Now, Options, Packet, Setup, mavlink, mip, mpu, msp, text, vectornav};
+use crate::motion::Truth;
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
-use crate::time::SimTime;
 
 /// The format of the packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +67,16 @@ impl Protocol {
         self.row().about
     }
 
+    /// The key of `[[output]]` that belongs to other protocols, if this is one: those that have it.
+    pub(crate) fn owners(key: &str) -> impl Iterator<Item = Protocol> {
+        Self::ALL.into_iter().filter(move |protocol| protocol.row().keys.contains(&key))
+    }
+
+    /// Every key of `[[output]]` that some protocol has for itself.
+    pub(crate) fn own_keys() -> impl Iterator<Item = &'static str> {
+        Self::ALL.into_iter().flat_map(|protocol| protocol.row().keys.iter().copied())
+    }
+
     /// The dialogue for `controller`; `None` where the other side says nothing.
     pub fn dialogue(self, controller: Option<Controller>) -> Option<Box<dyn Dialogue>> {
         (self.row().dialogue)(controller)
@@ -102,8 +112,8 @@ impl Encoder for Picky {
         self.encoder.encode(&Now { readings: &self.carried, ..*now }, out);
     }
 
-    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
-        self.encoder.farewell(t, out);
+    fn farewell(&mut self, end: &Truth, out: &mut Vec<Packet>) {
+        self.encoder.farewell(end, out);
     }
 
     fn waiting(&self) -> ByKind<u64> {
@@ -121,26 +131,33 @@ pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> R
 
 /// What a protocol cannot carry of these sensors, for `check` and the report: it does not send a kind without a
 /// field, and a sensor faster than the packets that carry it loses samples to newer ones.
-pub fn warnings(protocol: Protocol, sensors: &[SensorPlan]) -> Vec<String> {
+pub fn warnings(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> Vec<String> {
     let (carried, left): (Vec<_>, Vec<_>) = sensors.iter().partition(|sensor| protocol.carries(sensor.kind));
     let unsent = left.into_iter().map(|sensor| {
         format!("{} has no place for {}: its readings are not sent", protocol.name(), sensor.kind)
     });
-    unsent.chain(replaced(protocol, &carried)).collect()
+    unsent.chain(replaced(protocol, options, &carried)).collect()
 }
 
 /// The warnings about sensors faster than the packets that carry them.
-fn replaced(protocol: Protocol, sensors: &[&SensorPlan]) -> Vec<String> {
+fn replaced(protocol: Protocol, options: &Options, sensors: &[&SensorPlan]) -> Vec<String> {
     let shared = sensors.first().and_then(|first| (protocol.row().shared)(first));
     let Some(shared) = shared else { return Vec::new() };
     let faster = sensors.iter().filter(|sensor| shared.kinds.contains(sensor.kind));
     let faster = faster.filter(|sensor| sensor.rate.as_hz() > shared.rate.as_hz());
+    let become_of = match options.means() {
+        true => "go out as their mean",
+        false => "are replaced by newer ones and counted as dropped",
+    };
     let fits = shared.fits.map_or(String::new(), |rate| format!("; a rate of {rate} fits"));
     faster
         .map(|sensor| {
             format!(
-                "{} sends {}: samples of {} ({}) between two of them are replaced by newer ones and counted as dropped{fits}",
-                protocol.name(), shared.what, sensor.kind, sensor.rate
+                "{} sends {}: samples of {} ({}) between two of them {become_of}{fits}",
+                protocol.name(),
+                shared.what,
+                sensor.kind,
+                sensor.rate
             )
         })
         .collect()

@@ -23,6 +23,8 @@ pub(super) struct Row {
     pub dialogue: fn(Option<Controller>) -> Option<Box<dyn Dialogue>>,
     /// The packets that carry several sensors, in a scene whose first carried sensor is this one.
     pub shared: fn(&SensorPlan) -> Option<Shared>,
+    /// The keys of `[[output]]` that are for it alone.
+    pub keys: &'static [&'static str],
     /// Checks that it works with these options.
     pub check: fn(&Options, &[SensorPlan]) -> Result<(), String>,
     /// Bytes that start a sender which waits for some, with a sequence number.

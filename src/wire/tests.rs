@@ -361,7 +361,7 @@ fn mavlink_carries_the_newest_of_each_sensor_with_a_bit_for_each_that_ticked() {
         replaced[1] > 200 && replaced[2] > 50 && replaced[0] == 0,
         "accel and mag are faster: {replaced:?}"
     );
-    let warnings = warnings(Protocol::Mavlink, &plan(&scene).sensors);
+    let warnings = warnings(Protocol::Mavlink, &Options::default(), &plan(&scene).sensors);
     assert!(warnings.len() == 2 && warnings[0].contains("accel (200 Hz)"), "{warnings:?}");
 }
 
@@ -589,7 +589,7 @@ fn mavlink_has_the_differential_pressure_with_its_bit_where_the_pitot_tube_ticke
 #[test]
 fn what_a_protocol_has_no_place_for_is_said_and_not_sent() {
     let aided = plan(AIDED);
-    let said = |protocol| warnings(protocol, &aided.sensors);
+    let said = |protocol| warnings(protocol, &Options::default(), &aided.sensors);
     let mpu = said(Protocol::Mpu);
     assert!(mpu.len() == 2 && mpu[0].contains("no place for baro") && mpu[1].contains("gps"), "{mpu:?}");
     assert!(said(Protocol::Msp)[0].contains("no place for gps"));

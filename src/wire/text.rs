@@ -39,6 +39,7 @@ const fn lines(
         reader,
         dialogue: |_| None,
         shared: |_| None,
+        keys: &[],
         check: any,
         greeting: |_| b"\n".to_vec(),
         is_numbered: false,

@@ -27,6 +27,7 @@ pub(super) static ROW: Row = Row {
     reader: |_| Box::new(reader::Reader::default()),
     dialogue: |controller| Some(Box::new(dialogue::Unit::new(controller))),
     shared: |first| Some(Shared::at_ticks("a packet", CARRIED, first)),
+    keys: &["thin"],
     check: any,
     greeting: |_| b"\n".to_vec(),
     is_numbered: false,
@@ -44,7 +45,6 @@ pub(super) struct Vectornav {
     latest: Latest,
     /// The index of the next AHRS packet.
     next: u64,
-    last: Option<Truth>,
     has_mag: bool,
 }
 
@@ -53,7 +53,6 @@ impl Vectornav {
         Vectornav {
             latest: Latest::new(setup, |own| setup.peer.rate.unwrap_or(own)),
             next: 0,
-            last: None,
             has_mag: setup.sensors.iter().any(|sensor| sensor.kind == SensorKind::Mag),
         }
     }
@@ -61,7 +60,6 @@ impl Vectornav {
 
 impl Encoder for Vectornav {
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
-        self.last = Some(*now.truth);
         let mut buffer = [0; MAX_LEN];
         self.latest.encode(now.t, now.readings, out, &mut buffer, write);
         if AHRS.tick(self.next) <= now.t {
@@ -71,18 +69,20 @@ impl Encoder for Vectornav {
         }
     }
 
-    fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
-        let Some(truth) = &self.last else { return };
+    fn farewell(&mut self, end: &Truth, out: &mut Vec<Packet>) {
+        if !self.latest.has_begun() {
+            return;
+        }
         let mut still = *self.latest.newest();
         for (kind, value) in
-            [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(truth))
+            [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].into_iter().zip(stopped(end))
         {
             let value = if kind == SensorKind::Mag && !self.has_mag { Vector::ZERO } else { value };
             still.put(kind, Some(value));
         }
         let mut buffer = [0; MAX_LEN];
-        let len = write(t, &still, &mut buffer);
-        out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
+        let len = write(end.t, &still, &mut buffer);
+        out.push(Packet::new(end.t, Kinds::NONE, &buffer[..len]));
     }
 
     fn waiting(&self) -> ByKind<u64> {

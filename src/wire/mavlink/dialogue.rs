@@ -30,6 +30,8 @@ const GROUND_STATION: u8 = 6;
 /// An autopilot may send the same estimate as quaternion and as Euler angles. The quaternion counts; Euler angles
 /// count only after this long without a quaternion, ns.
 const QUATERNION_GONE: i64 = 1_000_000_000;
+/// Its clock goes back by more than this when it restarts, ms.
+const SET_BACK: i32 = 1000;
 
 /// The conversation on one link.
 pub(super) struct Mavlink {
@@ -63,6 +65,8 @@ struct Ear {
     autopilot: Option<Autopilot>,
     asking: Asking,
     quaternion_at: Option<i64>,
+    /// The newest time of its clock, ms.
+    boot_ms: Option<u32>,
     way: Way,
     damaged: u64,
 }
@@ -82,6 +86,7 @@ impl Mavlink {
                 autopilot: None,
                 asking: Asking::default(),
                 quaternion_at: None,
+                boot_ms: None,
                 way,
                 damaged: 0,
             },
@@ -215,11 +220,29 @@ impl Ear {
         }
     }
 
+    /// Its clock counts from its boot: where that goes back it has restarted, and has to be asked again.
+    fn notice_restart(&mut self, time_boot_ms: u32, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        let Some(before) = self.boot_ms.replace(time_boot_ms) else { return };
+        // In whole turns of the 32 bits.
+        if time_boot_ms.wrapping_sub(before).cast_signed() > -SET_BACK {
+            return;
+        }
+        self.asking = Asking::default();
+        if let Way::Hitl(px4) = &mut self.way {
+            px4.boot(now);
+        }
+        let [before, after] = [before, time_boot_ms].map(|ms| f64::from(ms) / 1000.0);
+        say(Said::Restart(format!(
+            "the controller has restarted: its clock went back from {before:.1} s to {after:.1} s"
+        )));
+    }
+
     fn estimate(&mut self, time_boot_ms: u32, q: DQuat, now: i64, say: &mut dyn FnMut(Said<'_>)) {
         if !(q.is_finite() && q.length_squared() > 0.25) {
             self.damaged += 1;
             return;
         }
+        self.notice_restart(time_boot_ms, now, say);
         let attitude = Attitude::from_quat(q.normalize());
         if let Way::Hitl(px4) = &mut self.way {
             px4.attitude(attitude, now);

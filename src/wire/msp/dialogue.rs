@@ -99,6 +99,11 @@ impl Dialogue for Inav {
         self.stage
     }
 
+    /// Measured: at 100 packets a second INAV answers each.
+    fn answers_every_packet(&self) -> bool {
+        true
+    }
+
     fn damaged(&self) -> u64 {
         self.damaged
     }

@@ -24,6 +24,8 @@ struct Wanted {
     id: u32,
     /// The request was granted, or refused for good.
     settled: bool,
+    /// It flowed once. What stops then is requested again: a controller that restarts forgets the request.
+    flowed: bool,
     flow: Flow,
 }
 
@@ -37,7 +39,7 @@ struct Flow {
 
 impl Default for Asking {
     fn default() -> Asking {
-        let wanted = |id| Wanted { id, settled: false, flow: Flow::default() };
+        let wanted = |id| Wanted { id, settled: false, flowed: false, flow: Flow::default() };
         Asking { wanted: [attitude_quaternion::ID, attitude::ID].map(wanted), last: None }
     }
 }
@@ -48,6 +50,7 @@ impl Asking {
         if let Some(wanted) = self.wanted.iter_mut().find(|wanted| wanted.id == id) {
             wanted.flow.at(now);
             wanted.flow.count += 1;
+            wanted.flowed |= wanted.flow.is_enough(now);
         }
     }
 
@@ -75,11 +78,10 @@ impl Asking {
         }
         let after = self.last.map_or(0, |(last, _)| last + 1);
         let mut turn = (after..after + self.wanted.len()).map(|i| i % self.wanted.len());
-        let Some(next) = turn.find(|&i| !self.wanted[i].settled && !self.wanted[i].flow.is_enough(now))
-        else {
-            return;
-        };
+        let Some(next) = turn.find(|&i| self.wanted[i].is_missing(now)) else { return };
         self.last = Some((next, now));
+        self.wanted[next].flowed = false;
+        self.wanted[next].settled = false;
         let command = command_long::Repr {
             params: [self.wanted[next].id as f32, INTERVAL_US, 0.0, 0.0, 0.0, 0.0, 0.0],
             command: command_long::SET_MESSAGE_INTERVAL,
@@ -88,6 +90,13 @@ impl Asking {
             confirmation: 0,
         };
         voice.say(&Message::CommandLong(command), say);
+    }
+}
+
+impl Wanted {
+    /// Whether it does not flow, and a request may help.
+    fn is_missing(&self, now: i64) -> bool {
+        (!self.settled || self.flowed) && !self.flow.is_enough(now)
     }
 }
 

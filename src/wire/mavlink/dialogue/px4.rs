@@ -80,16 +80,21 @@ impl Px4 {
         let last = self.beat_at.replace(now);
         let booted = last.is_none_or(|last| now - last > REBOOTED);
         if booted {
-            self.parameters.forget();
-            self.parameters.want(HITL);
-            for (_, config, rate) in INSTANCES {
-                self.parameters.want(config);
-                self.parameters.want(rate);
-            }
-            (self.steady, self.given) = (Steady::default(), Given::default());
-            (self.fed_since, self.reacted, self.settled) = (Some(now), false, false);
+            self.boot(now);
         }
         booted
+    }
+
+    /// Forgets what was known of it before it booted.
+    pub(super) fn boot(&mut self, now: i64) {
+        self.parameters.forget();
+        self.parameters.want(HITL);
+        for (_, config, rate) in INSTANCES {
+            self.parameters.want(config);
+            self.parameters.want(rate);
+        }
+        (self.steady, self.given) = (Steady::default(), Given::default());
+        (self.fed_since, self.reacted, self.settled, self.ready) = (Some(now), false, false, false);
     }
 
     /// Records that it reacts to the samples.

@@ -5,7 +5,7 @@ use crate::time::NANOS;
 use crate::wire::MAX_PACKET;
 use proptest::prelude::*;
 use ratetable_protocols::mavlink::{
-    self, Version, command_long, hil_sensor, param_name, param_value, system_time,
+    self, Version, command_ack, command_long, hil_sensor, param_name, param_value, system_time,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -45,6 +45,7 @@ enum Word {
     Reply(Vec<u8>),
     Took,
     Notice(String),
+    Restart(String),
     Pass(Vec<u8>),
 }
 
@@ -55,6 +56,7 @@ impl Word {
             Said::Reply(bytes) => Word::Reply(bytes.to_vec()),
             Said::Took => Word::Took,
             Said::Notice(notice) => Word::Notice(notice.clone()),
+            Said::Restart(notice) => Word::Restart(notice.clone()),
             Said::Pass(bytes) => Word::Pass(bytes.to_vec()),
         }
     }
@@ -256,7 +258,7 @@ fn talk(mut board: Board, seconds: i64) -> Talk {
                     talk.replies.push((t, header, message));
                     board.take(&bytes, &mut out);
                 }
-                Word::Notice(notice) => talk.notices.push((t, notice)),
+                Word::Notice(notice) | Word::Restart(notice) => talk.notices.push((t, notice)),
                 Word::Took | Word::Pass(_) => {}
             }
         }
@@ -399,6 +401,70 @@ fn one_that_boots_anew_is_asked_anew() {
         .iter()
         .filter(|(t, _, message)| *t > 12.5 && matches!(message, Message::ParamRequestRead(_)));
     assert_eq!(again.count(), 8);
+}
+
+#[test]
+fn one_whose_clock_goes_back_has_restarted_and_is_asked_for_its_attitude_again() {
+    let mut dialogue = Mavlink::new(None);
+    hear(&mut dialogue, &from(1, 1, &beat(12, 0)), 0);
+    let asks = |dialogue: &mut Mavlink, now| {
+        let mut words = Vec::new();
+        dialogue.tick(now, &mut |said| words.push(Word::of(&said)));
+        words.iter().filter(|word| matches!(word, Word::Reply(_))).count()
+    };
+    let tell = |dialogue: &mut Mavlink, ms: u32, now| {
+        said(hear(dialogue, &from(1, 1, &quaternion(ms, [1.0, 0.0, 0.0, 0.0])), now))
+    };
+    // Two seconds of both messages at 50 Hz: nothing is missing.
+    for k in 0..100_u32 {
+        let now = i64::from(k) * 20_000_000;
+        assert!(
+            tell(&mut dialogue, 100_000 + 20 * k, now).iter().all(|word| matches!(word, Word::Estimate(_)))
+        );
+        hear(&mut dialogue, &from(1, 1, &euler(100_000 + 20 * k, [0.0; 3])), now);
+    }
+    assert_eq!(asks(&mut dialogue, 2_000_000_000), 0);
+    // A packet that overtook another is no restart.
+    assert_eq!(tell(&mut dialogue, 101_900, 2_010_000_000).len(), 1);
+    let words = tell(&mut dialogue, 700, 2_600_000_000);
+    let [Word::Restart(notice), Word::Estimate(_)] = &words[..] else { panic!("{words:?}") };
+    assert_eq!(notice, "the controller has restarted: its clock went back from 101.9 s to 0.7 s");
+    assert_eq!(asks(&mut dialogue, 2_610_000_000), 1, "at once, although it flowed in the second before");
+    // The 32 bits of its clock wrap after 49.7 days.
+    assert_eq!(tell(&mut dialogue, u32::MAX - 10, 3_000_000_000).len(), 1);
+    assert_eq!(tell(&mut dialogue, 9, 3_020_000_000).len(), 1);
+}
+
+#[test]
+fn an_attitude_that_stops_is_asked_for_again_although_it_was_granted() {
+    let mut dialogue = Mavlink::new(None);
+    hear(&mut dialogue, &from(1, 1, &beat(12, 0)), 0);
+    let asked = |dialogue: &mut Mavlink, now: i64| {
+        let mut ids = Vec::new();
+        dialogue.tick(now, &mut |said| {
+            if let Said::Reply(bytes) = said
+                && let (_, Message::CommandLong(command)) = message(bytes)
+            {
+                ids.push(command.params[0] as u32);
+            }
+        });
+        ids
+    };
+    let grant =
+        from(1, 1, &Message::CommandAck(command_ack::Repr { command: 511, result: 0, ..Default::default() }));
+    for step in 0..4 {
+        let now = step * 500_000_000;
+        if !asked(&mut dialogue, now).is_empty() {
+            hear(&mut dialogue, &grant, now);
+        }
+    }
+    assert!(asked(&mut dialogue, 3_000_000_000).is_empty(), "both are granted, although none has come");
+    for k in 0..100 {
+        let now = 3_000_000_000 + k * 20_000_000;
+        hear(&mut dialogue, &from(1, 1, &quaternion(k as u32 * 20, [1.0, 0.0, 0.0, 0.0])), now);
+    }
+    assert!(asked(&mut dialogue, 5_500_000_000).is_empty());
+    assert_eq!(asked(&mut dialogue, 7_500_000_000), [31], "the one that flowed, and stopped");
 }
 
 #[test]
