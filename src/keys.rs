@@ -30,7 +30,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// The same, being `default` when absent.
+    /// The same with this default.
     pub const fn or(self, default: &'static str) -> Key {
         Key { default: Some(default), ..self }
     }
@@ -40,12 +40,12 @@ impl Key {
         self.takes
     }
 
-    /// A key of body axes for a sensor that has one component.
+    /// The same for a sensor of one component; a key without axes stays as it is.
     pub fn of_one_axis(self) -> Key {
         self.along(Takes::OneAxis)
     }
 
-    /// A key of body axes for a sensor whose components are along nav axes.
+    /// The same for a sensor along nav axes; a key without axes stays as it is.
     pub fn along_nav(self) -> Key {
         self.along(Takes::NavVector)
     }

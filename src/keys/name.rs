@@ -1,4 +1,4 @@
-//! The name of a key, and as what its value is read: the one constant by which a key is declared and read.
+//! A key's name with the type of its value: one constant declares the key and reads it.
 
 use super::{Columns, Key, Nested, Takes, Text, Value, Values};
 use crate::double::Double;
@@ -8,9 +8,9 @@ use crate::time::SimTime;
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 
-/// A key's name, its value being read as `T`: `const RANGE: Name<f64> = Name::new("range");`.
+/// The name of a key whose value is read as `T`: `const RANGE: Name<f64> = Name::new("range");`.
 ///
-/// A table of a scene has no two names spelled alike.
+/// No table of a scene has two names that are spelled alike.
 #[derive(Debug, PartialEq)]
 pub struct Name<T: ?Sized>(&'static str, PhantomData<T>);
 
@@ -45,7 +45,7 @@ pub trait Held {
     /// By value, or borrowed where it is large.
     type As<'v>;
 
-    /// `None` of a value that a key of another kind holds.
+    /// `None` for a value of another kind.
     fn of(value: &Value) -> Option<Self::As<'_>>;
 }
 
@@ -84,7 +84,7 @@ held! {
 }
 
 impl<T: ?Sized> Name<T> {
-    /// Spelled so in a scene.
+    /// Of the key that a scene spells so.
     pub const fn new(name: &'static str) -> Name<T> {
         Name(name, PhantomData)
     }
@@ -95,7 +95,7 @@ impl<T: ?Sized> Name<T> {
     }
 
     const fn key(self, takes: Takes, about: &'static str) -> Key {
-        // The first word is the usual one.
+        // The first word stands for an absent one.
         let default = if let Takes::Word(words) = takes { Some(words[0]) } else { None };
         Key { name: self.0, takes, default, about }
     }
@@ -142,7 +142,7 @@ mod tests {
     use crate::wire::PacketFaultKind;
     use crate::{motion, sensor};
 
-    /// Of two keys of one name each would read what the other declares.
+    /// Two keys of one name in a table would read each other's values.
     #[test]
     fn no_table_has_two_keys_of_one_name() {
         fn distinct(keys: &[Key]) -> bool {
