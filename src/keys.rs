@@ -2,27 +2,60 @@
 //!
 //! Each kind of motion and each error term lists its keys beside its code; the scene reads any such list, checks
 //! names, units and defaults, and hands back [`Values`] in SI units and in the program's own axes. `ratetable
-//! list` and the docs print the same lists, so a key cannot be accepted and left undocumented.
+//! list` and the docs print the same lists, so a key cannot be accepted and left undocumented. A key is declared and
+//! read through one constant, its [`Name`], so it cannot be read as another kind than it was declared.
+
+mod name;
+
+pub use name::Name;
 
 use crate::double::Double;
 use crate::geometry::Attitude;
 use crate::quantity::{Kind, Resolution};
 use crate::time::SimTime;
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// One key of a table.
+/// One key of a table; its [`Name`] makes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// As written in the scene.
     pub name: &'static str,
-    /// What it accepts.
-    pub takes: Takes,
+    takes: Takes,
     /// What it is when absent; `None` = nothing, which the builder may refuse.
     pub default: Option<&'static str>,
     /// One line for `list` and the docs.
     pub about: &'static str,
+}
+
+impl Key {
+    /// The same with this default.
+    pub const fn or(self, default: &'static str) -> Key {
+        Key { default: Some(default), ..self }
+    }
+
+    /// What it accepts.
+    pub fn takes(&self) -> Takes {
+        self.takes
+    }
+
+    /// The same for a sensor of one component; a key without axes stays as it is.
+    pub fn of_one_axis(self) -> Key {
+        self.along(Takes::OneAxis)
+    }
+
+    /// The same for a sensor along nav axes; a key without axes stays as it is.
+    pub fn along_nav(self) -> Key {
+        self.along(Takes::NavVector)
+    }
+
+    fn along(self, axes: fn(Kind) -> Takes) -> Key {
+        match self.takes {
+            Takes::PerAxis(kind) | Takes::BodyVector(kind) => Key { takes: axes(kind), ..self },
+            _ => self,
+        }
+    }
 }
 
 /// What a key accepts.
@@ -141,137 +174,25 @@ pub enum Value {
     Tables(Vec<Values>),
 }
 
-/// The values of one table, by key. A getter returns `None` for a key that is absent and has no default.
+/// The values of one table, by key, each read through the [`Name`] that declares its key.
 #[derive(Clone, Debug, Default)]
 pub struct Values(BTreeMap<&'static str, Value>);
 
 impl Values {
-    /// Sets one key.
+    /// Sets what `key` holds, of the kind that it takes.
     pub fn insert(&mut self, key: &'static str, value: Value) {
         self.0.insert(key, value);
     }
 
     /// Whether the key has a value.
-    pub fn has(&self, key: &str) -> bool {
-        self.0.contains_key(key)
+    pub fn has(&self, key: impl Into<&'static str>) -> bool {
+        self.0.contains_key(key.into())
     }
 
-    /// A scalar to double-double precision.
-    pub fn double(&self, key: &str) -> Option<Double> {
-        match self.0.get(key)? {
-            Value::Scalar(value) => Some(*value),
-            other => mismatch(key, other),
-        }
+    /// What a key holds, whatever its kind; `None` where it is absent and has no default.
+    pub fn held(&self, key: &Key) -> Option<&Value> {
+        self.0.get(key.name)
     }
-
-    /// A scalar.
-    pub fn scalar(&self, key: &str) -> Option<f64> {
-        self.double(key).map(Double::to_f64)
-    }
-
-    /// Three components to double-double precision.
-    pub fn triple(&self, key: &str) -> Option<[Double; 3]> {
-        match self.0.get(key)? {
-            Value::Triple(value) => Some(*value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// Three components.
-    pub fn vector(&self, key: &str) -> Option<DVec3> {
-        self.triple(key).map(|t| DVec3::from_array(t.map(Double::to_f64)))
-    }
-
-    /// A linear map.
-    pub fn matrix(&self, key: &str) -> Option<DMat3> {
-        match self.0.get(key)? {
-            Value::Matrix(value) => Some(*value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// Whether a flag is set; `None` where it is not given.
-    pub fn flag(&self, key: &str) -> Option<bool> {
-        match self.0.get(key)? {
-            Value::Flag(value) => Some(*value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// A whole number.
-    pub fn whole(&self, key: &str) -> Option<u64> {
-        match self.0.get(key)? {
-            Value::Whole(value) => Some(*value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// The tables called so; none where there is no such key.
-    pub fn tables(&self, key: &str) -> &[Values] {
-        match self.0.get(key) {
-            None => &[],
-            Some(Value::Tables(tables)) => tables,
-            Some(other) => mismatch(key, other).unwrap_or_default(),
-        }
-    }
-
-    /// The first table called so.
-    pub fn table(&self, key: &str) -> Option<&Values> {
-        self.tables(key).first()
-    }
-
-    /// A resolution.
-    pub fn resolution(&self, key: &str) -> Option<Resolution> {
-        match self.0.get(key)? {
-            Value::Resolution(value) => Some(*value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// A time.
-    pub fn time(&self, key: &str) -> Option<SimTime> {
-        match self.0.get(key)? {
-            Value::Time(value) => Some(*value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// A word.
-    pub fn word(&self, key: &str) -> Option<&'static str> {
-        match self.0.get(key)? {
-            Value::Word(value) => Some(*value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// Attitudes with their times.
-    pub fn keyframes(&self, key: &str) -> Option<&[(SimTime, Attitude)]> {
-        match self.0.get(key)? {
-            Value::Keyframes(value) => Some(value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// A file.
-    pub fn file(&self, key: &str) -> Option<&Text> {
-        match self.0.get(key)? {
-            Value::File(value) => Some(value),
-            other => mismatch(key, other),
-        }
-    }
-
-    /// The names of columns, and how many inside units one of theirs is.
-    pub fn columns(&self, key: &str) -> Option<(&[String], f64)> {
-        match self.0.get(key)? {
-            Value::Columns(names, unit) => Some((names, *unit)),
-            other => mismatch(key, other),
-        }
-    }
-}
-
-/// A table that asks for a key as another kind than it declared is a defect of the program, found by its tests.
-fn mismatch<T>(key: &str, value: &Value) -> Option<T> {
-    panic!("`{key}` was declared and read as different kinds: {value:?}")
 }
 
 /// A value that is well formed but cannot be: the key, and what would be right.
@@ -285,8 +206,8 @@ pub struct KeyError {
 
 impl KeyError {
     /// At `key`, saying `message`.
-    pub fn new(key: &'static str, message: impl Into<String>) -> KeyError {
-        KeyError { key, message: message.into() }
+    pub fn new(key: impl Into<&'static str>, message: impl Into<String>) -> KeyError {
+        KeyError { key: key.into(), message: message.into() }
     }
 }
 

@@ -22,6 +22,7 @@ mod bias_temperature;
 mod bias_walk;
 pub mod block;
 mod clock_error;
+mod converter;
 mod delay;
 pub mod fault;
 mod filter;
@@ -48,21 +49,25 @@ mod vibration;
 mod wander;
 pub mod white_noise;
 
-pub use bias::settle as settle_bias;
-pub use bias_walk::step as bias_step;
+pub use bias::{BIAS, settle as settle_bias};
+pub use bias_instability::{BIAS_INSTABILITY, BIAS_INSTABILITY_START, CORRELATION_TIME, is_flicker};
+pub use bias_walk::{BIAS_RANDOM_WALK, BIAS_STEP_STD, step as bias_step};
 pub use block::{Block, Column};
 pub use clock_error::{clock, jitter};
+pub use converter::{RANGE, limits, lsb};
 pub use delay::delay;
 pub use fault::{Fault, FaultKind};
+pub use filter::{FILTER, LOW_PASS};
+pub use g_sensitivity::G_SENSITIVITY;
+pub use hard_iron::HARD_IRON;
 pub use kind::{Air, ByKind, Claims, Derived, InAir, Row, Senses, SensorKind, Shape, Shown, Table};
 pub use kinds::Kinds;
 pub use lever_arm::{at_arm, lever_arm};
 pub use matrix::matrix;
 pub use mount::Mount;
-pub use range::limits;
+pub use nonlinearity::NONLINEARITY;
 pub use reading::{Fix, Measured, Measurement, Position, Reading};
-pub use resolution::lsb;
-pub use temperature::REFERENCE as REFERENCE_TEMPERATURE;
+pub use temperature::{REFERENCE as REFERENCE_TEMPERATURE, TEMPERATURE};
 pub use units::Units;
 
 use crate::keys::{Key, KeyError, Values};
@@ -286,7 +291,7 @@ impl Sensor {
         let faults = plan.faults.iter().filter(|_| !left_out.contains(&FAULT)).enumerate();
         for (index, fault) in faults {
             sensor.names.push(FAULT);
-            let range = plan.values.scalar("range");
+            let range = plan.values.get(RANGE);
             sensor.readings.push(fault.term(index, range, &plan.context(seed)));
         }
         Ok(sensor)

@@ -3,8 +3,10 @@
 //! Densities are two-sided, in SI: noise density N = σ/√(1/fs), of σ a sample's; random walk K, of the bias. Source:
 //! Kalibr's wiki, "IMU Noise Model" and "YAML formats".
 
+use crate::keys::Name;
 use crate::scene::Plan;
-use crate::sensor::{SensorKind, SensorPlan, white_noise};
+use crate::sensor::{BIAS_RANDOM_WALK, BIAS_STEP_STD, SensorKind, SensorPlan, white_noise};
+use glam::DVec3;
 use std::fmt::Write;
 
 /// Its name in the folder.
@@ -39,8 +41,8 @@ fn densities(sensor: &SensorPlan) -> [f64; 2] {
     let root_rate = libm::sqrt(sensor.rate.as_hz());
     let sigma = white_noise::sigma(&sensor.values, sensor.kind, sensor.rate).unwrap_or_default();
     let walk = |axis: usize| {
-        let at = |key| sensor.values.vector(key).unwrap_or_default()[axis];
-        libm::hypot(at("bias_random_walk"), at("bias_step_std") * root_rate)
+        let at = |key: Name<DVec3>| sensor.values.get(key).unwrap_or_default()[axis];
+        libm::hypot(at(BIAS_RANDOM_WALK), at(BIAS_STEP_STD) * root_rate)
     };
     [sigma.max_element() / root_rate, (0..3).map(walk).fold(0.0, f64::max)]
 }

@@ -2,15 +2,15 @@
 
 use super::{EffectKind, Found, Judge, Survey};
 use crate::geometry::Vector;
-use crate::keys::{Key, Takes, Values};
-use crate::sensor::{TERMS, bias_step, limits, lsb, matrix, white_noise};
+use crate::keys::{Key, Value, Values};
+use crate::sensor::{self, TERMS, bias_step, limits, lsb, matrix, white_noise};
 use glam::{DMat3, DVec3};
 
 /// Hard iron: its own size.
 pub(super) static HARD_IRON: EffectKind = EffectKind {
     name: "hard_iron",
     judge: Judge::Both,
-    find: |survey| used(survey, "hard_iron", survey.sensor.values.vector("hard_iron")?.abs(), "constant"),
+    find: |survey| used(survey, "hard_iron", survey.sensor.values.get(sensor::HARD_IRON)?.abs(), "constant"),
 };
 
 /// Scale error, misalignment and cross-coupling, M together: `(M − 1)·signal`, where that is largest.
@@ -30,7 +30,7 @@ pub(super) static NONLINEARITY: EffectKind = EffectKind {
     judge: Judge::Both,
     find: |survey| {
         let values = &survey.sensor.values;
-        let (bend, range) = (values.vector("nonlinearity")?, values.scalar("range")?);
+        let (bend, range) = (values.get(sensor::NONLINEARITY)?, values.get(sensor::RANGE)?);
         let size = survey.largest(|look| {
             let u = (survey.error_free(look).v / range).clamp(DVec3::NEG_ONE, DVec3::ONE);
             bend * range * (4.0 * u * u * u - 3.0 * u)
@@ -44,7 +44,7 @@ pub(super) static G_SENSITIVITY: EffectKind = EffectKind {
     name: "g_sensitivity",
     judge: Judge::Both,
     find: |survey| {
-        let matrix = survey.sensor.values.matrix("g_sensitivity")?;
+        let matrix = survey.sensor.values.get(sensor::G_SENSITIVITY)?;
         let size = survey.largest(|look| matrix * look.truth.force.v);
         used(survey, "g_sensitivity", size, "largest")
     },
@@ -54,7 +54,7 @@ pub(super) static G_SENSITIVITY: EffectKind = EffectKind {
 pub(super) static BIAS: EffectKind = EffectKind {
     name: "bias",
     judge: Judge::Both,
-    find: |survey| used(survey, "bias", survey.sensor.values.vector("bias")?.abs(), "constant"),
+    find: |survey| used(survey, "bias", survey.sensor.values.get(sensor::BIAS)?.abs(), "constant"),
 };
 
 /// Bias instability, a first-order Gauss-Markov process: σ throughout, or `σ·√(1 − e^(−2T/τ))` at the scene's end
@@ -64,8 +64,8 @@ pub(super) static BIAS_INSTABILITY: EffectKind = EffectKind {
     judge: Judge::Both,
     find: |survey| {
         let values = &survey.sensor.values;
-        let (sigma, tau) = (values.vector("bias_instability")?, values.vector("correlation_time")?);
-        if values.word("bias_instability_start") != Some("zero") {
+        let (sigma, tau) = (values.get(sensor::BIAS_INSTABILITY)?, values.get(sensor::CORRELATION_TIME)?);
+        if values.get(sensor::BIAS_INSTABILITY_START) != Some("zero") {
             return used(survey, "bias_instability", sigma, "standard deviation");
         }
         let grown = (survey.span() / tau).to_array().map(|x| libm::sqrt(-libm::expm1(-2.0 * x)));
@@ -140,12 +140,11 @@ pub(super) fn key(survey: &Survey<'_>, term: &str) -> Option<String> {
 }
 
 fn says_something(key: &Key, values: &Values) -> bool {
-    match key.takes {
-        Takes::Scalar(_) => values.scalar(key.name).is_some_and(|value| value != 0.0),
-        Takes::PerAxis(_) | Takes::BodyVector(_) | Takes::NavVector(_) | Takes::OneAxis(_) => {
-            values.vector(key.name).is_some_and(|value| value != DVec3::ZERO)
-        }
-        Takes::Flag => values.flag(key.name) == Some(true),
-        _ => values.has(key.name) && key.default.is_none(),
+    match values.held(key) {
+        None => false,
+        Some(Value::Scalar(number)) => number.to_f64() != 0.0,
+        Some(Value::Triple(vector)) => vector.iter().any(|number| number.to_f64() != 0.0),
+        Some(Value::Flag(flag)) => *flag,
+        Some(_) => key.default.is_none(),
     }
 }

@@ -7,34 +7,23 @@
 use super::{Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;
 use crate::geometry::{Attitude, Euler, Nav, Vector, exp};
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{KeyError, Name, Values};
 use crate::quantity::{Kind, Sign, text_scalar};
 use crate::time::SimTime;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
+const BANK: Name<f64> = Name::new("bank");
+const SPEED: Name<f64> = Name::new("speed");
+const ENTRY: Name<SimTime> = Name::new("entry");
+
 pub(super) static KIND: MotionKind = MotionKind {
     name: "circle",
     about: "a coordinated turn, to the right for a positive bank",
     keys: &[
-        Key {
-            name: "bank",
-            takes: Takes::Scalar(Kind::ANGLE),
-            default: None,
-            about: "the steady bank, between -90 and 90 deg",
-        },
-        Key {
-            name: "speed",
-            takes: Takes::Scalar(Kind::SPEED.signed(Sign::Positive)),
-            default: None,
-            about: "along the path",
-        },
-        Key {
-            name: "entry",
-            takes: Takes::Duration,
-            default: Some("2 s"),
-            about: "how long it takes to roll in, and to roll out",
-        },
+        BANK.scalar(Kind::ANGLE, "the steady bank, between -90 and 90 deg"),
+        SPEED.scalar(Kind::SPEED.signed(Sign::Positive), "along the path"),
+        ENTRY.duration("how long it takes to roll in, and to roll out").or("2 s"),
     ],
     has_length: false,
     build,
@@ -52,17 +41,17 @@ struct Circle {
 }
 
 fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError> {
-    let (Some(bank), Some(speed)) = (values.scalar("bank"), values.scalar("speed")) else {
+    let (Some(bank), Some(speed)) = (values.get(BANK), values.get(SPEED)) else {
         return Err(KeyError::new(
             "kind",
             "`circle` needs both `bank`, such as \"25 deg\", and `speed`, such as \"15 m/s\"",
         ));
     };
-    let entry = values.time("entry").unwrap_or_default();
+    let entry = values.get(ENTRY).unwrap_or_default();
     if bank.abs() >= FRAC_PI_2 {
         let given = text_scalar(bank, "deg");
         return Err(KeyError::new(
-            "bank",
+            BANK,
             format!("a coordinated turn has a bank between -90 and 90 deg, not {given}"),
         ));
     }
@@ -71,7 +60,7 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
             "rolling in and out takes {entry} each, which does not fit in the motion's {}",
             context.duration
         );
-        return Err(KeyError::new("entry", message));
+        return Err(KeyError::new(ENTRY, message));
     }
     Ok(Box::new(Circle { bank, speed, entry, duration: context.duration, gravity: context.gravity }))
 }

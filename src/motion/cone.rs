@@ -7,27 +7,24 @@
 use super::{Kinematics, Motion, MotionKind};
 use crate::double::Double;
 use crate::geometry::{Attitude, Vector};
-use crate::keys::{Key, KeyError, Takes};
+use crate::keys::{KeyError, Name};
 use crate::quantity::{Kind, Sign};
 use glam::DQuat;
 use std::f64::consts::TAU;
+
+const HALF_ANGLE: Name<Double> = Name::new("half_angle");
+const FREQUENCY: Name<Double> = Name::new("frequency");
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "cone",
     about: "coning: the x axis moves around a cone with a half-angle at a frequency",
     keys: &[
-        Key { name: "half_angle", takes: Takes::Scalar(Kind::ANGLE), default: None, about: "of the cone" },
-        Key {
-            name: "frequency",
-            takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::NonNegative)),
-            default: None,
-            about: "turns around the cone per second",
-        },
+        HALF_ANGLE.scalar(Kind::ANGLE, "of the cone"),
+        FREQUENCY.scalar(Kind::FREQUENCY.signed(Sign::NonNegative), "turns around the cone per second"),
     ],
     has_length: false,
     build: |values, context| {
-        let (Some(half_angle), Some(frequency)) = (values.double("half_angle"), values.double("frequency"))
-        else {
+        let (Some(half_angle), Some(frequency)) = (values.get(HALF_ANGLE), values.get(FREQUENCY)) else {
             return Err(KeyError::new(
                 "kind",
                 "`cone` needs both `half_angle`, such as \"5 deg\", and `frequency`, such as \"2 Hz\"",

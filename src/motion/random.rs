@@ -7,7 +7,7 @@
 
 use super::integrated::{BodyRate, Integrated};
 use super::{Built, Context, MotionKind};
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::{self, Stream};
 use crate::time::SimTime;
@@ -15,22 +15,16 @@ use glam::DVec3;
 use rand::RngExt;
 use std::f64::consts::TAU;
 
+const AMPLITUDE: Name<DVec3> = Name::new("amplitude");
+const BANDWIDTH: Name<f64> = Name::new("bandwidth");
+
 pub(super) static KIND: MotionKind = MotionKind {
     name: "random",
     about: "a random angular rate within a band, repeatable by seed",
     keys: &[
-        Key {
-            name: "amplitude",
-            takes: Takes::PerAxis(Kind::ANGULAR_RATE.signed(Sign::NonNegative)),
-            default: None,
-            about: "root mean square of the angular rate",
-        },
-        Key {
-            name: "bandwidth",
-            takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive)),
-            default: None,
-            about: "the highest frequency in it",
-        },
+        AMPLITUDE
+            .per_axis(Kind::ANGULAR_RATE.signed(Sign::NonNegative), "root mean square of the angular rate"),
+        BANDWIDTH.scalar(Kind::FREQUENCY.signed(Sign::Positive), "the highest frequency in it"),
     ],
     has_length: false,
     build,
@@ -48,7 +42,7 @@ struct Sum {
 }
 
 fn build(values: &Values, context: &Context) -> Built {
-    let (Some(amplitude), Some(bandwidth)) = (values.vector("amplitude"), values.scalar("bandwidth")) else {
+    let (Some(amplitude), Some(bandwidth)) = (values.get(AMPLITUDE), values.get(BANDWIDTH)) else {
         return Err(KeyError::new(
             "kind",
             "`random` needs both `amplitude`, such as \"20 deg/s\", and `bandwidth`, such as \"2 Hz\"",
@@ -61,7 +55,7 @@ fn build(values: &Values, context: &Context) -> Built {
     match Integrated::new(sum, &[0.0, known.unwrap_or_default().seconds()]) {
         Some(motion) => Ok(Box::new(motion)),
         None => Err(KeyError::new(
-            "bandwidth",
+            BANDWIDTH,
             "with this duration it is too high to solve exactly: shorten the motion or lower the bandwidth",
         )),
     }

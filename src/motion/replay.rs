@@ -14,7 +14,7 @@ mod survey;
 
 use super::{Built, Context, MotionKind};
 use crate::geometry::{Attitude, Axes, Euler};
-use crate::keys::{Columns, Key, KeyError, Takes, Values};
+use crate::keys::{Columns, KeyError, Name, Text, Values};
 use crate::quantity::Kind;
 use crate::table::Table;
 use attitude::AttitudeLog;
@@ -23,52 +23,46 @@ use glam::{DQuat, DVec3};
 use log::Log;
 use rate::RateLog;
 
+const FILE: Name<Text> = Name::new("file");
+const TIME: Name<Columns> = Name::new("time");
+const RATE: Name<f64> = Name::new("rate");
+const QUATERNION: Name<Columns> = Name::new("quaternion");
+const EULER: Name<Columns> = Name::new("euler");
+const ANGULAR_RATE: Name<Columns> = Name::new("angular_rate");
+const ALIGN: Name<&str> = Name::new("align");
+
 pub(super) static KIND: MotionKind = MotionKind {
     name: "replay",
     about: "plays a recorded log of attitude or angular rate, in the scene's axes",
     keys: &[
-        Key {
-            name: "file",
-            takes: Takes::File,
-            default: None,
-            about: "the log: columns under a header, separated by commas, semicolons, tabs or spaces, or a TUM trajectory; lines that start with # are comments",
-        },
-        Key {
-            name: "time",
-            takes: Takes::Columns(Columns { count: 1, kind: Some(Kind::TIME) }),
-            default: None,
-            about: "its time column by name or by number from 1 (default: t_ns, t_s, time, timestamp, …)",
-        },
-        Key {
-            name: "rate",
-            takes: Takes::Scalar(Kind::RATE),
-            default: None,
-            about: "or instead the row rate, for a log without a time column",
-        },
-        Key {
-            name: "quaternion",
-            takes: Takes::Columns(Columns { count: 4, kind: None }),
-            default: None,
-            about: "its attitude columns, w first, body to nav (default: qw, qx, qy, qz, q_RS_w, …, q[0], …)",
-        },
-        Key {
-            name: "euler",
-            takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGLE) }),
-            default: None,
-            about: "or instead roll, pitch, yaw (default: roll_rad, …, roll [deg], …)",
-        },
-        Key {
-            name: "angular_rate",
-            takes: Takes::Columns(Columns { count: 3, kind: Some(Kind::ANGULAR_RATE) }),
-            default: None,
-            about: "or instead angular rate about body x, y, z (default: wx_rad_s, …, x_rad_s, …, w_RS_S_x [rad s^-1], …)",
-        },
-        Key {
-            name: "align",
-            takes: Takes::Word(&["none", "start"]),
-            default: Some("none"),
-            about: "whether an attitude log plays as logged, or is rotated as a whole to start at the vehicle's attitude",
-        },
+        FILE.file(
+            "the log: columns under a header, separated by commas, semicolons, tabs or spaces, or a TUM trajectory; lines that start with # are comments",
+        ),
+        TIME.columns(
+            1,
+            Some(Kind::TIME),
+            "its time column by name or by number from 1 (default: t_ns, t_s, time, timestamp, …)",
+        ),
+        RATE.scalar(Kind::RATE, "or instead the row rate, for a log without a time column"),
+        QUATERNION.columns(
+            4,
+            None,
+            "its attitude columns, w first, body to nav (default: qw, qx, qy, qz, q_RS_w, …, q[0], …)",
+        ),
+        EULER.columns(
+            3,
+            Some(Kind::ANGLE),
+            "or instead roll, pitch, yaw (default: roll_rad, …, roll [deg], …)",
+        ),
+        ANGULAR_RATE.columns(
+            3,
+            Some(Kind::ANGULAR_RATE),
+            "or instead angular rate about body x, y, z (default: wx_rad_s, …, x_rad_s, …, w_RS_S_x [rad s^-1], …)",
+        ),
+        ALIGN.word(
+            &["none", "start"],
+            "whether an attitude log plays as logged, or is rotated as a whole to start at the vehicle's attitude",
+        ),
     ],
     has_length: true,
     build,
@@ -78,10 +72,10 @@ pub(super) static KIND: MotionKind = MotionKind {
 const AGREE: f64 = 1e-6;
 
 fn build(values: &Values, context: &Context) -> Built {
-    let Some(file) = values.file("file") else {
+    let Some(file) = values.get(FILE) else {
         return Err(KeyError::new("kind", "`replay` needs a `file`, such as file = \"log.csv\""));
     };
-    let table = Table::open(&file.name, file.contents.as_bytes()).map_err(columns::at("file"))?;
+    let table = Table::open(&file.name, file.contents.as_bytes()).map_err(columns::at(FILE))?;
     let mut warnings = Vec::new();
     let when = columns::when(&table, values)?;
     let turns = columns::turns(&table, values, &mut warnings)?;
@@ -122,7 +116,7 @@ fn attitudes<const N: usize>(
     warnings.extend_from_slice(&log.warnings);
     let mut knots = unit_quaternions(&log, context.axes, to_quat, &mut warnings)?;
     let first = Attitude::from_quat(knots[0]);
-    let aligned = values.word("align") == Some("start");
+    let aligned = values.get(ALIGN) == Some("start");
     let apart = first.angle_to(context.start);
     if aligned {
         let turn = context.start.q * first.q.conjugate();
@@ -130,7 +124,7 @@ fn attitudes<const N: usize>(
     } else if !context.anywhere && apart > AGREE {
         let q = context.axes.attitude_out(first);
         return Err(KeyError::new(
-            "file",
+            FILE,
             format!(
                 "{} starts {:.6} deg from the vehicle's attitude: set [start] quaternion = [{}, {}, {}, {}], or add align = \"start\" to rotate the log",
                 log.place(0),
@@ -177,7 +171,7 @@ fn unit_quaternions<const N: usize>(
     }
     warnings.extend(survey::some_of(odd));
     match log::first_of(null) {
-        Some(message) => Err(KeyError::new("file", message)),
+        Some(message) => Err(KeyError::new(FILE, message)),
         None => Ok(knots),
     }
 }
@@ -192,7 +186,7 @@ fn rates(log: Log<3>, context: &Context, mut warnings: Vec<String>) -> Built {
     match RateLog::new(log.grid, &rates, warnings) {
         Some(motion) => Ok(Box::new(motion)),
         None => Err(KeyError::new(
-            "file",
+            FILE,
             format!(
                 "{place} and on: this log is too long or turns too fast to solve exactly (four million steps): cut it into several"
             ),

@@ -7,39 +7,24 @@
 use super::{Built, Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;
 use crate::geometry::{Attitude, Body, Vector, exp};
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use glam::DVec3;
 use std::f64::consts::TAU;
+
+const AXIS: Name<&str> = Name::new("axis");
+const AMPLITUDE: Name<f64> = Name::new("amplitude");
+const FREQUENCY: Name<Double> = Name::new("frequency");
+const PHASE: Name<Double> = Name::new("phase");
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "rock",
     about: "rocks back and forth: a sine of angular rate about one body axis",
     keys: &[
-        Key {
-            name: "axis",
-            takes: Takes::Word(&["roll", "pitch", "yaw"]),
-            default: Some("roll"),
-            about: "the body axis to turn about: x, y or z",
-        },
-        Key {
-            name: "amplitude",
-            takes: Takes::Scalar(Kind::ANGULAR_RATE),
-            default: None,
-            about: "the largest angular rate",
-        },
-        Key {
-            name: "frequency",
-            takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive)),
-            default: None,
-            about: "full swings per second",
-        },
-        Key {
-            name: "phase",
-            takes: Takes::Scalar(Kind::ANGLE),
-            default: Some("0 deg"),
-            about: "of the rate's sine at the start",
-        },
+        AXIS.word(&["roll", "pitch", "yaw"], "the body axis to turn about: x, y or z"),
+        AMPLITUDE.scalar(Kind::ANGULAR_RATE, "the largest angular rate"),
+        FREQUENCY.scalar(Kind::FREQUENCY.signed(Sign::Positive), "full swings per second"),
+        PHASE.scalar(Kind::ANGLE, "of the rate's sine at the start").or("0 deg"),
     ],
     has_length: false,
     build,
@@ -57,18 +42,18 @@ struct Rock {
 }
 
 fn build(values: &Values, context: &Context) -> Built {
-    let (Some(amplitude), Some(turns)) = (values.scalar("amplitude"), values.double("frequency")) else {
+    let (Some(amplitude), Some(turns)) = (values.get(AMPLITUDE), values.get(FREQUENCY)) else {
         return Err(KeyError::new(
             "kind",
             "`rock` needs both `amplitude`, such as \"20 deg/s\", and `frequency`, such as \"0.5 Hz\"",
         ));
     };
-    let axis = match values.word("axis") {
+    let axis = match values.get(AXIS) {
         Some("pitch") => DVec3::Y * context.axes.body_sign(),
         Some("yaw") => DVec3::Z * context.axes.body_sign(),
         _ => DVec3::X,
     };
-    Ok(Box::new(Rock { axis, amplitude, turns, phase: values.double("phase").unwrap_or_default() }))
+    Ok(Box::new(Rock { axis, amplitude, turns, phase: values.get(PHASE).unwrap_or_default() }))
 }
 
 impl Rock {

@@ -6,38 +6,23 @@
 use super::{Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;
 use crate::geometry::{Attitude, Body, Vector};
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{KeyError, Name, Values};
 use crate::quantity::Kind;
 use glam::{DQuat, DVec3};
+
+const ANGULAR_RATE: Name<[Double; 3]> = Name::new("angular_rate");
+const ROLL: Name<Double> = Name::new("roll");
+const PITCH: Name<Double> = Name::new("pitch");
+const YAW: Name<Double> = Name::new("yaw");
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "rotate",
     about: "turns at a constant angular rate, given as a vector or as roll, pitch or yaw",
     keys: &[
-        Key {
-            name: "angular_rate",
-            takes: Takes::BodyVector(Kind::ANGULAR_RATE),
-            default: None,
-            about: "about the body's x, y and z",
-        },
-        Key {
-            name: "roll",
-            takes: Takes::Scalar(Kind::ANGULAR_RATE),
-            default: None,
-            about: "about the body's x only",
-        },
-        Key {
-            name: "pitch",
-            takes: Takes::Scalar(Kind::ANGULAR_RATE),
-            default: None,
-            about: "about the body's y only",
-        },
-        Key {
-            name: "yaw",
-            takes: Takes::Scalar(Kind::ANGULAR_RATE),
-            default: None,
-            about: "about the body's z only",
-        },
+        ANGULAR_RATE.body_vector(Kind::ANGULAR_RATE, "about the body's x, y and z"),
+        ROLL.scalar(Kind::ANGULAR_RATE, "about the body's x only"),
+        PITCH.scalar(Kind::ANGULAR_RATE, "about the body's y only"),
+        YAW.scalar(Kind::ANGULAR_RATE, "about the body's z only"),
     ],
     has_length: false,
     build,
@@ -53,13 +38,13 @@ struct Rotate {
 
 fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError> {
     let short: Vec<_> =
-        ["roll", "pitch", "yaw"].into_iter().enumerate().filter(|(_, key)| values.has(key)).collect();
-    match (values.triple("angular_rate"), &short[..]) {
+        [ROLL, PITCH, YAW].into_iter().enumerate().filter(|(_, key)| values.has(*key)).collect();
+    match (values.get(ANGULAR_RATE), &short[..]) {
         (Some(rate), []) => Ok(Box::new(Rotate::new(rate))),
         (None, &[(axis, key)]) => {
             let sign = if axis == 0 { 1.0 } else { context.axes.body_sign() };
             let mut rate = [Double::from(0.0); 3];
-            rate[axis] = values.double(key).unwrap_or_default() * Double::from(sign);
+            rate[axis] = values.get(key).unwrap_or_default() * Double::from(sign);
             Ok(Box::new(Rotate::new(rate)))
         }
         (None, []) => Err(KeyError::new(
@@ -67,7 +52,7 @@ fn build(values: &Values, context: &Context) -> Result<Box<dyn Motion>, KeyError
             "`rotate` needs `angular_rate`, or one of `roll`, `pitch` and `yaw`, such as roll = \"30 deg/s\"",
         )),
         (_, [.., (_, key)]) => Err(KeyError::new(
-            key,
+            *key,
             "`rotate` takes one of `angular_rate`, `roll`, `pitch` and `yaw`; for several axes at once use `angular_rate`",
         )),
     }

@@ -9,19 +9,16 @@
 use super::{Built, Context, Kinematics, Motion, MotionKind};
 use crate::double::Double;
 use crate::geometry::{Attitude, Vector, exp, log};
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{KeyError, Name, Values};
 use crate::time::SimTime;
 use glam::{DQuat, DVec3};
+
+const KEYS: Name<[(SimTime, Attitude)]> = Name::new("keys");
 
 pub(super) static KIND: MotionKind = MotionKind {
     name: "waypoints",
     about: "turns smoothly from attitude to attitude, at rest at each",
-    keys: &[Key {
-        name: "keys",
-        takes: Takes::Keyframes,
-        default: None,
-        about: "each a time `t` since the motion's start and an `attitude` or a `quaternion`",
-    }],
+    keys: &[KEYS.keyframes("each a time `t` since the motion's start and an `attitude` or a `quaternion`")],
     has_length: false,
     build,
 };
@@ -43,7 +40,7 @@ struct Waypoints {
 }
 
 fn build(values: &Values, context: &Context) -> Built {
-    let keys = values.keyframes("keys").unwrap_or_default();
+    let keys = values.get(KEYS).unwrap_or_default();
     let Some((last, _)) = keys.last() else {
         return Err(KeyError::new(
             "kind",
@@ -52,15 +49,15 @@ fn build(values: &Values, context: &Context) -> Built {
     };
     if *last > context.duration {
         let message = format!("the last is at {last}, but the motion ends at {}", context.duration);
-        return Err(KeyError::new("keys", message));
+        return Err(KeyError::new(KEYS, message));
     }
     if let Some(pair) = keys.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
         let message = format!("{} comes after {}: write them in time order", pair[1].0, pair[0].0);
-        return Err(KeyError::new("keys", message));
+        return Err(KeyError::new(KEYS, message));
     }
     if keys[0].0 == SimTime::ZERO && keys[0].1.angle_to(context.start) > AGREE {
         let message = "the one at 0 s is not the vehicle's attitude when the motion starts: leave it out, or add a key for the turn to it";
-        return Err(KeyError::new("keys", message));
+        return Err(KeyError::new(KEYS, message));
     }
     Ok(Box::new(Waypoints::new(context.start, keys)))
 }

@@ -29,7 +29,7 @@ fn the_scene_as_resolved_says_the_velocity_where_it_matters() {
         assert!(
             (velocity.v - glam::DVec3::new(7.5, 15.0 * libm::cos(30f64.to_radians()), 0.0)).length() < 1e-12
         );
-        let sensor = |plan: &Plan| plan.sensors[1].values.vector("bias").unwrap();
+        let sensor = |plan: &Plan| plan.sensors[1].values.get(crate::sensor::BIAS).unwrap();
         assert_eq!(sensor(&first), sensor(&again));
         assert!(sensor(&first).x != 0.0 && first.warnings.is_empty(), "{:?}", first.warnings);
     }

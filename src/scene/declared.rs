@@ -27,7 +27,7 @@ impl Section<'_> {
     fn value(&self, key: &Key, may_draw: bool) -> Option<keys::Value> {
         if let Some(Value::Table(table)) = self.entry(key.name).map(|entry| &entry.node.value)
             && may_draw
-            && !matches!(key.takes, Takes::Table(_))
+            && !matches!(key.takes(), Takes::Table(_))
         {
             return self.draw(key, table);
         }
@@ -36,7 +36,7 @@ impl Section<'_> {
             key.default.map(|text| if text == "0" { format!("0 {}", kind.units()[0]) } else { text.into() })
         };
         let name = key.name;
-        Some(match key.takes {
+        Some(match key.takes() {
             Takes::Scalar(kind) => {
                 keys::Value::Scalar(
                     self.measured(name, zero(kind).as_deref(), kind.example(), |text| kind.scalar(text))?,

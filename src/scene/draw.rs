@@ -25,7 +25,7 @@ fn first_text(value: &Value) -> Option<&str> {
 impl Section<'_> {
     /// A value drawn once a run: `{ uniform = [low, high] }` or `{ normal = [mean, std] }`, each axis by itself.
     pub(super) fn draw(&self, key: &Key, table: &Table) -> Option<keys::Value> {
-        let (kind, scalar) = match key.takes {
+        let (kind, scalar) = match key.takes() {
             Takes::Scalar(kind) | Takes::OneAxis(kind) => (kind, true),
             Takes::PerAxis(kind) | Takes::BodyVector(kind) | Takes::NavVector(kind) | Takes::Matrix(kind) => {
                 (kind, false)
@@ -52,7 +52,7 @@ impl Section<'_> {
         self.reader.draws.borrow_mut().push(Drawn::new(path, text.clone(), values, kind, written));
         self.resolve(key.name, text);
         let sign = self.reader.axes.get().body_sign();
-        Some(match key.takes {
+        Some(match key.takes() {
             Takes::Scalar(_) => keys::Value::Scalar(drawn[0].into()),
             Takes::PerAxis(_) | Takes::OneAxis(_) => keys::Value::Triple(drawn.map(Into::into)),
             Takes::NavVector(_) => keys::Value::Triple(nav_in(self.axes(), kind, drawn.map(Into::into))),

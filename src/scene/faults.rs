@@ -122,7 +122,7 @@ fn of_sensor(section: &Section<'_>, kind: sensor::FaultKind, sensors: &mut [Sens
     let fault = sensor::Fault { kind, start, end, values };
     match sensors.iter_mut().find(|plan| plan.kind == sensor) {
         Some(plan) => {
-            if let Err(error) = fault.check(sensor, plan.values.scalar("range")) {
+            if let Err(error) = fault.check(sensor, plan.values.get(sensor::RANGE)) {
                 section.mistake(error.key, &error.message);
             }
             plan.faults.push(fault);

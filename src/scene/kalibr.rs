@@ -109,7 +109,7 @@ fn without_directive(text: &str) -> Cow<'_, str> {
 #[cfg(test)]
 mod tests {
     use crate::scene::{Plan, SceneError};
-    use crate::sensor::white_noise;
+    use crate::sensor::{BIAS_RANDOM_WALK, white_noise};
     use std::fs;
 
     const YAML: &str = "# from a calibration\nimu0:\n  T_i_b:\n  - [1.0, 0.0]\n  accelerometer_noise_density: 0.0123\n  accelerometer_random_walk: 2.5e-4\n  gyroscope_noise_density: 3.4e-4\n  gyroscope_random_walk: 0\n  rostopic: /imu0\n  update_rate: 200\n";
@@ -137,7 +137,7 @@ mod tests {
                 assert_eq!(sensor.rate.as_hz(), 200.0);
                 let sigma = white_noise::sigma(&sensor.values, sensor.kind, sensor.rate).unwrap();
                 assert!((sigma.x / (density * 200f64.sqrt()) - 1.0).abs() < 1e-14, "{sigma}");
-                assert_eq!(sensor.values.vector("bias_random_walk").unwrap().z, walk);
+                assert_eq!(sensor.values.get(BIAS_RANDOM_WALK).unwrap().z, walk);
             }
             assert!(
                 !plan.resolved.contains("imu.yaml"),

@@ -138,8 +138,9 @@ fn fill(
     scales: &[Scale],
     mount: Option<&Entry>,
 ) -> Vec<Entry> {
-    let noise_given = white_noise::KEYS.iter().any(|key| section.has_quietly(key));
-    let closed = |key: &str| section.has_quietly(key) || (noise_given && white_noise::KEYS.contains(&key));
+    let noise_keys = white_noise::KEYS.map(|key| key.name());
+    let noise_given = noise_keys.iter().any(|key| section.has_quietly(key));
+    let closed = |key: &str| section.has_quietly(key) || (noise_given && noise_keys.contains(&key));
     let open = |key: &str| !closed(key);
     let mut fill: Vec<Entry> =
         preset.entries.iter().filter(|entry| open(&entry.key)).filter_map(preset_value).collect();

@@ -4,7 +4,7 @@ use super::*;
 use crate::double::Double;
 use crate::earth;
 use crate::geometry::{Body, Nav, Vector, exp};
-use crate::sensor::{Mount, Sampling, SensorKind, white_noise};
+use crate::sensor::{self, Mount, Sampling, SensorKind, white_noise};
 use crate::time::{NANOS, Rate};
 use crate::wire::{Extra, Layout, Protocol, Version};
 use glam::DVec3;
@@ -117,8 +117,8 @@ fn the_example_of_the_documentation_means_what_it_says() {
     let [gyro, accel, mag] = &plan.sensors[..] else { panic!() };
     assert_eq!([gyro.kind, accel.kind, mag.kind], SensorKind::TRIADS);
     assert_eq!([gyro.rate, accel.rate, mag.rate], [Rate::hz(1000), Rate::hz(1000), Rate::hz(100)]);
-    assert_eq!(gyro.values.vector("bias").unwrap(), DVec3::new(-0.0005, -0.0005, 0.0006), "turned to FRD");
-    assert_eq!(accel.values.vector("bias").unwrap(), DVec3::new(0.0007, -0.00033, 0.00404));
+    assert_eq!(gyro.values.get(sensor::BIAS).unwrap(), DVec3::new(-0.0005, -0.0005, 0.0006), "turned to FRD");
+    assert_eq!(accel.values.get(sensor::BIAS).unwrap(), DVec3::new(0.0007, -0.00033, 0.00404));
     let sigma = |sensor: &SensorPlan| white_noise::sigma(&sensor.values, sensor.kind, sensor.rate).unwrap().x;
     assert_eq!((sigma(gyro), sigma(accel), sigma(mag)), (3e-6f64.sqrt(), 0.0, 0.2));
     assert_eq!(plan.outputs[0].to.to_string(), "mpu@pty");
@@ -233,7 +233,7 @@ fn one_vehicle_written_in_either_axes_is_one_truth() {
         near(a.force, b.force);
         near(a.field, b.field);
     }
-    assert_eq!(ned.sensors[0].values.vector("bias"), enu.sensors[0].values.vector("bias"));
+    assert_eq!(ned.sensors[0].values.get(sensor::BIAS), enu.sensors[0].values.get(sensor::BIAS));
 }
 
 #[test]
@@ -334,14 +334,14 @@ fn drawn_values_repeat_by_seed_and_stand_in_the_resolved_scene() {
             one.resolved
         );
     }
-    let std = one.sensors[0].values.vector("noise_std").unwrap();
+    let std = one.sensors[0].values.get(white_noise::NOISE_STD).unwrap();
     assert!(
         std.to_array().iter().all(|x| (0.001..0.003).contains(x)) && std.x != std.y,
         "each axis by itself: {std}"
     );
-    let bias = one.sensors[0].values.vector("bias").unwrap();
+    let bias = one.sensors[0].values.get(sensor::BIAS).unwrap();
     assert!(bias.y == 0.0 && bias.x != 0.0 && bias.z != 0.0, "{bias}");
-    assert!((2.0..4.0).contains(&(one.sensors[1].values.scalar("range").unwrap() / 9.80665)));
+    assert!((2.0..4.0).contains(&(one.sensors[1].values.get(sensor::RANGE).unwrap() / 9.80665)));
 }
 
 #[test]
@@ -350,8 +350,8 @@ fn drawn_values_have_the_distribution_asked_for() {
     let (mut uniform, mut normal) = (Vec::new(), Vec::new());
     for seed in 0..runs {
         let plan = plan(&DRAWN.replace("seed = 3", &format!("seed = {seed}")));
-        uniform.extend(plan.sensors[0].values.vector("noise_std").unwrap().to_array());
-        normal.push(plan.sensors[0].values.vector("bias").unwrap().z.to_degrees());
+        uniform.extend(plan.sensors[0].values.get(white_noise::NOISE_STD).unwrap().to_array());
+        normal.push(plan.sensors[0].values.get(sensor::BIAS).unwrap().z.to_degrees());
     }
     // N uniform numbers over a width w have a mean good to w/√(12N), N normal ones to σ/√N: five of each allowed.
     let mean = |xs: &[f64]| xs.iter().sum::<f64>() / xs.len() as f64;
@@ -371,19 +371,19 @@ fn keys_beside_a_part_override_it() {
     assert_eq!(alone.sensors[0].part, Some("MPU-9250"));
     let bias = |plan: &Plan| plan.drawn.iter().any(|drawn| drawn.key == "gyro.bias");
     assert!(bias(&alone), "a part alone draws its turn-on bias");
-    assert!(alone.sensors[0].values.has("noise_density"));
+    assert!(alone.sensors[0].values.has(white_noise::NOISE_DENSITY));
     let mine =
         with("noise_std = \"0.002 rad/s\"\nbias = \"0 rad/s\"\nmount = \"frd\"\nrange = \"500 deg/s\"");
     let values = &mine.sensors[0].values;
     assert!(
-        !values.has("noise_density"),
+        !values.has(white_noise::NOISE_DENSITY),
         "one's own noise takes the place of the part's, however it is spelled"
     );
     assert_eq!((bias(&mine), mine.sensors[0].mount), (false, Some(Mount::default())));
-    let lsb = crate::sensor::lsb(values, SensorKind::Gyro).unwrap().to_degrees();
+    let lsb = sensor::lsb(values, SensorKind::Gyro).unwrap().to_degrees();
     assert!((lsb * 65.5 - 1.0).abs() < 1e-14, "the part's resolution at ±500 deg/s: {lsb}");
     let finer = with("range = \"300 deg/s\"\nresolution = \"100 LSB/(deg/s)\"");
-    let lsb = crate::sensor::lsb(&finer.sensors[0].values, SensorKind::Gyro).unwrap().to_degrees();
+    let lsb = sensor::lsb(&finer.sensors[0].values, SensorKind::Gyro).unwrap().to_degrees();
     assert!((lsb * 100.0 - 1.0).abs() < 1e-14, "one's own resolution goes with any range");
 }
 

@@ -1,10 +1,13 @@
 //! Turn-on bias: fixed, or drawn once per run.
 
 use super::{Block, Context, Kinds, Stage, Term, TermKind};
-use crate::double::Double;
-use crate::keys::{Key, Takes, Value, Values};
+use crate::keys::{Name, Values};
 use crate::quantity::Sign;
 use glam::DVec3;
+
+/// The turn-on bias, in body axes and the reading's unit.
+pub const BIAS: Name<DVec3> = Name::new("bias");
+const BIAS_STD: Name<DVec3> = Name::new("bias_std");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias",
@@ -15,22 +18,17 @@ pub(super) static KIND: TermKind = TermKind {
     keys: |sensor| {
         let reading = sensor.units().reading;
         vec![
-            Key {
-                name: "bias",
-                takes: Takes::BodyVector(reading),
-                default: Some("0"),
-                about: "turn-on bias",
-            },
-            Key {
-                name: "bias_std",
-                takes: Takes::PerAxis(reading.signed(Sign::NonNegative)),
-                default: Some("0"),
-                about: "standard deviation of a turn-on bias drawn once per run and added to `bias`",
-            },
+            BIAS.body_vector(reading, "turn-on bias").or("0"),
+            BIAS_STD
+                .per_axis(
+                    reading.signed(Sign::NonNegative),
+                    "standard deviation of a turn-on bias drawn once per run and added to `bias`",
+                )
+                .or("0"),
         ]
     },
     build: |values, _| {
-        let bias = values.vector("bias").unwrap_or_default();
+        let bias = values.get(BIAS).unwrap_or_default();
         Ok((bias != DVec3::ZERO).then(|| Box::new(Bias(bias)) as Box<dyn Term>))
     },
 };
@@ -38,12 +36,11 @@ pub(super) static KIND: TermKind = TermKind {
 /// Draws the turn-on bias of a run: `bias` becomes what was drawn, in body axes and the reading's unit, and
 /// `bias_std` zero. `None`, with nothing changed, where no spread is given.
 pub fn settle(values: &mut Values, context: &Context) -> Option<DVec3> {
-    let spread = values.vector("bias_std").filter(|spread| *spread != DVec3::ZERO)?;
-    let mut bias = values.vector("bias").unwrap_or_default();
+    let spread = values.get(BIAS_STD).filter(|spread| *spread != DVec3::ZERO)?;
+    let mut bias = values.get(BIAS).unwrap_or_default();
     bias += spread * DVec3::from_array(context.normals("bias", spread).draw());
-    let triple = |v: DVec3| Value::Triple(v.to_array().map(Double::from));
-    values.insert("bias", triple(bias));
-    values.insert("bias_std", triple(DVec3::ZERO));
+    values.set(BIAS, bias);
+    values.set(BIAS_STD, DVec3::ZERO);
     Some(bias)
 }
 

@@ -5,11 +5,20 @@
 //! deviation peaks at 0.617 σ, at 1.89 τ (IEEE Std 952-1997, annex C).
 
 use super::wander::wander;
-use super::{Block, Kinds, Stage, Term, TermKind, flicker};
-use crate::keys::{Key, KeyError, Takes};
+use super::{Block, Kinds, Stage, Term, TermKind};
+use crate::keys::{KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Normals;
 use glam::DVec3;
+
+/// The stationary standard deviation, or B of a 1/f spectrum, per axis, in the reading's unit.
+pub const BIAS_INSTABILITY: Name<DVec3> = Name::new("bias_instability");
+/// The time in which it decays to 1/e, per axis, s.
+pub const CORRELATION_TIME: Name<DVec3> = Name::new("correlation_time");
+/// Whether it is `stationary` at the start, or `zero`.
+pub const BIAS_INSTABILITY_START: Name<&str> = Name::new("bias_instability_start");
+/// Whether it has a 1/f spectrum instead.
+pub(super) const FLICKER: Name<bool> = Name::new("flicker");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_instability",
@@ -20,43 +29,39 @@ pub(super) static KIND: TermKind = TermKind {
     keys: |sensor| {
         let reading = sensor.units().reading;
         vec![
-            Key {
-                name: "bias_instability",
-                takes: Takes::PerAxis(reading.signed(Sign::NonNegative)),
-                default: Some("0"),
-                about: "stationary standard deviation of the wandering bias; needs `correlation_time`",
-            },
-            Key {
-                name: "correlation_time",
-                takes: Takes::PerAxis(Kind::TIME.signed(Sign::NonNegative)),
-                default: None,
-                about: "time in which the wandering bias decays to 1/e",
-            },
-            Key {
-                name: "bias_instability_start",
-                takes: Takes::Word(&["stationary", "zero"]),
-                default: Some("stationary"),
-                about: "where the wandering bias starts: drawn from its distribution, or at zero",
-            },
+            BIAS_INSTABILITY
+                .per_axis(
+                    reading.signed(Sign::NonNegative),
+                    "stationary standard deviation of the wandering bias; needs `correlation_time`",
+                )
+                .or("0"),
+            CORRELATION_TIME.per_axis(
+                Kind::TIME.signed(Sign::NonNegative),
+                "time in which the wandering bias decays to 1/e",
+            ),
+            BIAS_INSTABILITY_START.word(
+                &["stationary", "zero"],
+                "where the wandering bias starts: drawn from its distribution, or at zero",
+            ),
         ]
     },
     build: |values, context| {
-        if flicker::is_on(values) {
+        if is_flicker(values) {
             return Ok(None);
         }
-        let sigma = values.vector("bias_instability").unwrap_or_default();
-        let Some(tau) = values.vector("correlation_time") else {
+        let sigma = values.get(BIAS_INSTABILITY).unwrap_or_default();
+        let Some(tau) = values.get(CORRELATION_TIME) else {
             return match sigma == DVec3::ZERO {
                 true => Ok(None),
                 false => Err(KeyError::new(
-                    "bias_instability",
+                    BIAS_INSTABILITY,
                     "needs a `correlation_time` too, such as \"500 s\"; a bias that wanders without bound is `bias_random_walk`",
                 )),
             };
         };
         if tau.min_element() <= 0.0 {
             return Err(KeyError::new(
-                "correlation_time",
+                CORRELATION_TIME,
                 "a correlation time must be above 0; a bias that is new at each sample is white noise, `noise_std`",
             ));
         }
@@ -69,10 +74,15 @@ pub(super) static KIND: TermKind = TermKind {
         let mut normals = context.normals("bias_instability", sigma);
         let start = DVec3::from_array(normals.draw());
         let bias =
-            if values.word("bias_instability_start") == Some("zero") { DVec3::ZERO } else { sigma * start };
+            if values.get(BIAS_INSTABILITY_START) == Some("zero") { DVec3::ZERO } else { sigma * start };
         Ok(Some(Box::new(GaussMarkov { bias, decay, step: sigma * fresh, normals })))
     },
 };
+
+/// Whether the bias instability has a 1/f spectrum.
+pub fn is_flicker(values: &Values) -> bool {
+    values.get(FLICKER) == Some(true)
+}
 
 struct GaussMarkov {
     bias: DVec3,

@@ -1,9 +1,12 @@
 //! Bias that changes with temperature: `b += c·(T − 25 °C)`, the first order of IEEE Std 952-1997, sec. 5.4 (its
 //! temperature sensitivity); zero for a part whose `temperature` the scene does not give.
 
+use super::temperature::TEMPERATURE;
 use super::{Block, Kinds, REFERENCE_TEMPERATURE, Stage, Term, TermKind};
-use crate::keys::{Key, Takes};
+use crate::keys::Name;
 use glam::DVec3;
+
+const BIAS_TEMPERATURE: Name<DVec3> = Name::new("bias_temperature");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_temperature",
@@ -13,16 +16,15 @@ pub(super) static KIND: TermKind = TermKind {
     needs: &[],
     keys: |sensor| {
         let Some(per_kelvin) = sensor.units().per_kelvin else { return vec![] };
-        vec![Key {
-            name: "bias_temperature",
-            takes: Takes::BodyVector(per_kelvin),
-            default: Some("0"),
-            about: "bias per kelvin from 25 degC: acts where a `temperature` is given",
-        }]
+        vec![
+            BIAS_TEMPERATURE
+                .body_vector(per_kelvin, "bias per kelvin from 25 degC: acts where a `temperature` is given")
+                .or("0"),
+        ]
     },
     build: |values, _| {
-        let per_kelvin = values.vector("bias_temperature").unwrap_or_default();
-        let used = per_kelvin != DVec3::ZERO && values.has("temperature");
+        let per_kelvin = values.get(BIAS_TEMPERATURE).unwrap_or_default();
+        let used = per_kelvin != DVec3::ZERO && values.has(TEMPERATURE);
         Ok(used.then(|| Box::new(PerKelvin(per_kelvin)) as Box<dyn Term>))
     },
 };

@@ -5,10 +5,15 @@
 
 use super::wander::wander;
 use super::{Block, Context, Kinds, Stage, Term, TermKind};
-use crate::keys::{Key, Takes, Values};
+use crate::keys::{Name, Values};
 use crate::quantity::Sign;
 use crate::random::Normals;
 use glam::DVec3;
+
+/// The standard deviation of a step each sample, per axis, in the reading's unit.
+pub const BIAS_STEP_STD: Name<DVec3> = Name::new("bias_step_std");
+/// The rate random walk K, per axis, in the reading's unit a √s.
+pub const BIAS_RANDOM_WALK: Name<DVec3> = Name::new("bias_random_walk");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "bias_walk",
@@ -19,18 +24,15 @@ pub(super) static KIND: TermKind = TermKind {
     keys: |sensor| {
         let units = sensor.units();
         vec![
-            Key {
-                name: "bias_step_std",
-                takes: Takes::PerAxis(units.reading.signed(Sign::NonNegative)),
-                default: Some("0"),
-                about: "standard deviation of the bias's step each sample (the paper's n_b)",
-            },
-            Key {
-                name: "bias_random_walk",
-                takes: Takes::PerAxis(units.bias_walk),
-                default: Some("0"),
-                about: "IEEE 952 rate random walk K: the bias grows as K·√t at any rate",
-            },
+            BIAS_STEP_STD
+                .per_axis(
+                    units.reading.signed(Sign::NonNegative),
+                    "standard deviation of the bias's step each sample (the paper's n_b)",
+                )
+                .or("0"),
+            BIAS_RANDOM_WALK
+                .per_axis(units.bias_walk, "IEEE 952 rate random walk K: the bias grows as K·√t at any rate")
+                .or("0"),
         ]
     },
     build: |values, context| {
@@ -44,9 +46,9 @@ pub(super) static KIND: TermKind = TermKind {
 
 /// The σ of one step, per axis, in the reading's unit; the two independent walks add in variance.
 pub fn step(values: &Values, context: &Context) -> DVec3 {
-    let per_sample = values.vector("bias_step_std").unwrap_or_default();
+    let per_sample = values.get(BIAS_STEP_STD).unwrap_or_default();
     let per_root_second =
-        values.vector("bias_random_walk").unwrap_or_default() * libm::sqrt(context.rate.period());
+        values.get(BIAS_RANDOM_WALK).unwrap_or_default() * libm::sqrt(context.rate.period());
     DVec3::from_array([0, 1, 2].map(|axis| libm::hypot(per_sample[axis], per_root_second[axis])))
 }
 

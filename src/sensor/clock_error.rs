@@ -6,23 +6,17 @@
 //! (IEEE Std 1139).
 
 use super::{Block, Column, Kinds, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Nested, Takes, Values};
+use crate::keys::{Key, KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::Rate;
 
+const CLOCK_ERROR: Name<Values> = Name::new("clock_error");
+const OFFSET: Name<f64> = Name::new("offset");
+const JITTER: Name<f64> = Name::new("jitter");
+
 static KEYS: [Key; 2] = [
-    Key {
-        name: "offset",
-        takes: Takes::Scalar(Kind::RATIO),
-        default: Some("0"),
-        about: "how much it runs fast",
-    },
-    Key {
-        name: "jitter",
-        takes: Takes::Scalar(Kind::TIME.signed(Sign::NonNegative)),
-        default: Some("0"),
-        about: "standard deviation of the sampling time",
-    },
+    OFFSET.scalar(Kind::RATIO, "how much it runs fast").or("0"),
+    JITTER.scalar(Kind::TIME.signed(Sign::NonNegative), "standard deviation of the sampling time").or("0"),
 ];
 
 pub(super) static KIND: TermKind = TermKind {
@@ -32,24 +26,18 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Signal,
     needs: &[Column::Late],
     keys: |_| {
-        vec![Key {
-            name: "clock_error",
-            takes: Takes::Table(Nested {
-                keys: &KEYS,
-                alone: Some("offset"),
-                many: false,
-                example: "\"50 ppm\", or { offset = \"50 ppm\", jitter = \"2 us\" }",
-            }),
-            default: None,
-            about: "error of the sensor's own oscillator: its ticks drift against the host",
-        }]
+        vec![CLOCK_ERROR.table(
+            &KEYS,
+            Some(OFFSET.name()),
+            "\"50 ppm\", or { offset = \"50 ppm\", jitter = \"2 us\" }",
+            "error of the sensor's own oscillator: its ticks drift against the host",
+        )]
     },
     build: |values, context| {
-        let given = values.table("clock_error").and_then(|table| table.scalar("offset")).unwrap_or_default();
         if clock(values, context.rate).is_none() {
-            let message =
-                format!("an offset of {} % is too large for a clock: the limit is ±10 %", given * 100.0);
-            return Err(KeyError::new("clock_error", message));
+            let given = own(values, OFFSET) * 100.0;
+            let message = format!("an offset of {given} % is too large for a clock: the limit is ±10 %");
+            return Err(KeyError::new(CLOCK_ERROR, message));
         }
         Ok((jitter(values) > 0.0).then(|| Box::new(Jitter) as Box<dyn Term>))
     },
@@ -58,7 +46,7 @@ pub(super) static KIND: TermKind = TermKind {
 /// The rate as the sensor's oscillator has it, to 10⁻⁹; `None` for an offset beyond ±10 % or a rate beyond numbers.
 pub fn clock(values: &Values, rate: Rate) -> Option<Rate> {
     const BILLION: u64 = 1_000_000_000;
-    let offset = values.table("clock_error").and_then(|table| table.scalar("offset")).unwrap_or_default();
+    let offset = own(values, OFFSET);
     let parts = libm::round(offset * BILLION as f64) as i64;
     match parts {
         0 => Some(rate),
@@ -69,7 +57,12 @@ pub fn clock(values: &Values, rate: Rate) -> Option<Rate> {
 
 /// The standard deviation of the sampling time, s.
 pub fn jitter(values: &Values) -> f64 {
-    values.table("clock_error").and_then(|table| table.scalar("jitter")).unwrap_or_default()
+    own(values, JITTER)
+}
+
+/// A number of the table.
+fn own(values: &Values, name: Name<f64>) -> f64 {
+    values.get(CLOCK_ERROR).and_then(|table| table.get(name)).unwrap_or_default()
 }
 
 struct Jitter;

@@ -3,8 +3,10 @@
 //! statistics know no time.
 
 use super::{Block, Column, Kinds, Stage, Term, TermKind};
-use crate::keys::{Key, Takes, Values};
+use crate::keys::{Name, Values};
 use crate::time::SimTime;
+
+const DELAY: Name<SimTime> = Name::new("delay");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "delay",
@@ -12,20 +14,13 @@ pub(super) static KIND: TermKind = TermKind {
     serves: Kinds::ALL,
     stage: Stage::Signal,
     needs: &[Column::Late],
-    keys: |_| {
-        vec![Key {
-            name: "delay",
-            takes: Takes::Duration,
-            default: Some("0 s"),
-            about: "from sensing until the reading is available",
-        }]
-    },
+    keys: |_| vec![DELAY.duration("from sensing until the reading is available").or("0 s")],
     build: |values, _| Ok((delay(values) > SimTime::ZERO).then(|| Box::new(Delay) as Box<dyn Term>)),
 };
 
 /// How long before its tick a sample is sensed.
 pub fn delay(values: &Values) -> SimTime {
-    values.time("delay").unwrap_or_default()
+    values.get(DELAY).unwrap_or_default()
 }
 
 struct Delay;

@@ -4,14 +4,20 @@
 //! ones draw from the stream `fault/N/KIND`, N counting the sensor's faults from 0.
 
 use super::{Block, Context, SensorKind, Term};
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{Key, KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Stream;
 use crate::time::{Rate, SimTime};
+use glam::DVec3;
 use rand::RngExt;
 use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
+
+const SIZE: Name<DVec3> = Name::new("size");
+const SHARE: Name<f64> = Name::new("share");
+const EVERY: Name<u64> = Name::new("every");
+const DELAY: Name<SimTime> = Name::new("delay");
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,19 +67,15 @@ impl FaultKind {
 
     /// Its keys besides `sensor`, `kind`, `start` and `duration`.
     pub fn keys(self, sensor: SensorKind) -> Vec<Key> {
-        let key = |name, takes, default, about| Key { name, takes, default, about };
-        let size =
-            key("size", Takes::BodyVector(sensor.units().reading), None, "of what is added, or its bound");
+        let size = SIZE.body_vector(sensor.units().reading, "of what is added, or its bound");
         let size = sensor.turned(size);
-        let share = Takes::Scalar(Kind::RATIO.signed(Sign::NonNegative));
+        let share = |default, about| SHARE.scalar(Kind::RATIO.signed(Sign::NonNegative), about).or(default);
         match self {
             FaultKind::Off | FaultKind::Stuck | FaultKind::Wrong => vec![],
-            FaultKind::Slow => {
-                vec![key("every", Takes::Whole(2, 1_000_000), Some("10"), "one sample in this many")]
-            }
-            FaultKind::Delayed => vec![key("delay", Takes::Duration, None, "how old a reading is")],
-            FaultKind::Intermittent => vec![key("share", share, Some("50 %"), "of the samples is missing")],
-            FaultKind::Spike => vec![size, key("share", share, Some("1 %"), "of the samples has one")],
+            FaultKind::Slow => vec![EVERY.whole(2, 1_000_000, "one sample in this many").or("10")],
+            FaultKind::Delayed => vec![DELAY.duration("how old a reading is")],
+            FaultKind::Intermittent => vec![share("50 %", "of the samples is missing")],
+            FaultKind::Spike => vec![size, share("1 %", "of the samples has one")],
             FaultKind::Garbage | FaultKind::Step | FaultKind::Ramp => vec![size],
         }
     }
@@ -106,25 +108,25 @@ impl Fault {
     /// # Errors
     /// The key and what would be right.
     pub fn check(&self, sensor: SensorKind, range: Option<f64>) -> Result<(), KeyError> {
-        let (kind, has) = (self.kind.name(), |key| self.values.has(key));
+        let (kind, values) = (self.kind.name(), &self.values);
         let example = sensor.units().reading.example();
         match self.kind {
-            FaultKind::Spike | FaultKind::Step | FaultKind::Ramp if !has("size") => {
-                Err(KeyError::new("size", format!("a {kind} needs its size, such as size = \"{example}\"")))
+            FaultKind::Spike | FaultKind::Step | FaultKind::Ramp if !values.has(SIZE) => {
+                Err(KeyError::new(SIZE, format!("a {kind} needs its size, such as size = \"{example}\"")))
             }
-            FaultKind::Garbage if !has("size") && range.is_none() => {
+            FaultKind::Garbage if !values.has(SIZE) && range.is_none() => {
                 let message =
                     format!("garbage needs a size, such as \"{example}\", because the sensor has no range");
-                Err(KeyError::new("size", message))
+                Err(KeyError::new(SIZE, message))
             }
-            FaultKind::Delayed if !has("delay") => {
-                Err(KeyError::new("delay", "a delayed sensor needs its delay, such as delay = \"50 ms\""))
+            FaultKind::Delayed if !values.has(DELAY) => {
+                Err(KeyError::new(DELAY, "a delayed sensor needs its delay, such as delay = \"50 ms\""))
             }
             FaultKind::Ramp if self.end == SimTime::FOREVER => {
                 Err(KeyError::new("duration", "a ramp needs its duration: it reaches its size at the end"))
             }
-            _ if self.values.scalar("share").is_some_and(|share| share > 1.0) => {
-                Err(KeyError::new("share", "a share of the samples is at most 100 %"))
+            _ if values.get(SHARE).is_some_and(|share| share > 1.0) => {
+                Err(KeyError::new(SHARE, "a share of the samples is at most 100 %"))
             }
             _ => Ok(()),
         }
@@ -134,16 +136,16 @@ impl Fault {
     pub(super) fn term(&self, index: usize, range: Option<f64>, context: &Context) -> Box<dyn Term> {
         let before = |t| context.clock.ticks_before(context.phase, t);
         let values = &self.values;
-        let late = values.time("delay").unwrap_or_default().seconds() / context.clock.period();
+        let late = values.get(DELAY).unwrap_or_default().seconds() / context.clock.period();
         Box::new(Faulty {
             kind: self.kind,
             ticks: before(self.start)..before(self.end),
             clock: context.clock,
             phase: context.phase,
             times: [self.start, self.end],
-            size: values.vector("size").map_or([range.unwrap_or_default(); 3], |size| size.to_array()),
-            share: values.scalar("share").unwrap_or_default(),
-            every: values.whole("every").unwrap_or(1),
+            size: values.get(SIZE).map_or([range.unwrap_or_default(); 3], |size| size.to_array()),
+            share: values.get(SHARE).unwrap_or_default(),
+            every: values.get(EVERY).unwrap_or(1),
             streams: context.streams(&format!("fault/{index}/{}", self.kind.name())),
             past: VecDeque::new(),
             kept: if self.kind == FaultKind::Delayed { libm::round(late) as usize + 1 } else { 2 },

@@ -6,18 +6,19 @@
 //! Systems*, 3rd ed., sec. 6.3), so that any cut-off goes with any rate; it starts settled on the first sample.
 
 use super::{Block, Context, Kinds, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Nested, Takes, Values};
+use crate::keys::{Key, KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use std::f64::consts::{SQRT_2, TAU};
 
+/// The filter, a table of its own.
+pub const FILTER: Name<Values> = Name::new("filter");
+/// Within [`FILTER`]: its cut-off, Hz.
+pub const LOW_PASS: Name<f64> = Name::new("low_pass");
+const ORDER: Name<u64> = Name::new("order");
+
 static KEYS: [Key; 2] = [
-    Key {
-        name: "low_pass",
-        takes: Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive)),
-        default: None,
-        about: "cut-off: where the gain is 1/√2",
-    },
-    Key { name: "order", takes: Takes::Whole(1, 2), default: Some("1"), about: "2 is Butterworth" },
+    LOW_PASS.scalar(Kind::FREQUENCY.signed(Sign::Positive), "cut-off: where the gain is 1/√2"),
+    ORDER.whole(1, 2, "2 is Butterworth").or("1"),
 ];
 
 pub(super) static KIND: TermKind = TermKind {
@@ -27,23 +28,18 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {
-        vec![Key {
-            name: "filter",
-            takes: Takes::Table(Nested {
-                keys: &KEYS,
-                alone: Some("low_pass"),
-                many: false,
-                example: "{ low_pass = \"92 Hz\", order = 2 }",
-            }),
-            default: None,
-            about: "low-pass filter on the true signal; noise is given at the output and is not filtered",
-        }]
+        vec![FILTER.table(
+            &KEYS,
+            Some(LOW_PASS.name()),
+            "{ low_pass = \"92 Hz\", order = 2 }",
+            "low-pass filter on the true signal; noise is given at the output and is not filtered",
+        )]
     },
     build: |values, context| {
-        let filter = match values.table("filter") {
+        let filter = match values.get(FILTER) {
             None => return Ok(None),
             Some(_) => LowPass::of(values).ok_or_else(|| {
-                KeyError::new("filter", "needs a `low_pass`, such as { low_pass = \"92 Hz\" }")
+                KeyError::new(FILTER, "needs a `low_pass`, such as { low_pass = \"92 Hz\" }")
             })?,
         };
         Ok(Some(Box::new(Filter::new(filter, context))))
@@ -61,8 +57,8 @@ pub(super) struct LowPass {
 impl LowPass {
     /// The filter that a sensor's values ask for.
     pub fn of(values: &Values) -> Option<LowPass> {
-        let table = values.table("filter")?;
-        Some(LowPass { w: TAU * table.scalar("low_pass")?, second_order: table.whole("order") == Some(2) })
+        let table = values.get(FILTER)?;
+        Some(LowPass { w: TAU * table.get(LOW_PASS)?, second_order: table.get(ORDER) == Some(2) })
     }
 
     /// Gain and phase (rad) at a frequency, Hz.

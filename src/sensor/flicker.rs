@@ -5,19 +5,24 @@
 //! variance B²·ln r/π for a ratio r of neighbours (van der Ziel 1950; Keshner, *1/f noise*, Proc. IEEE 70(3), 1982:
 //! one process a decade is within some 5 %). Below the band the spectrum is flat, above it falls as 1/f².
 
+use super::bias_instability::{BIAS_INSTABILITY, FLICKER, is_flicker};
 use super::wander::wander;
 use super::{Block, Context, Kinds, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Nested, Takes, Values};
+use crate::keys::{Key, KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Normals;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-const HERTZ: Takes = Takes::Scalar(Kind::FREQUENCY.signed(Sign::Positive));
+const HERTZ: Kind = Kind::FREQUENCY.signed(Sign::Positive);
+
+const FLICKER_BAND: Name<Values> = Name::new("flicker_band");
+const FROM: Name<f64> = Name::new("from");
+const TO: Name<f64> = Name::new("to");
 
 static BAND: [Key; 2] = [
-    Key { name: "from", takes: HERTZ, default: Some("0.0001 Hz"), about: "where the band begins" },
-    Key { name: "to", takes: HERTZ, default: Some("10 Hz"), about: "where the band ends" },
+    FROM.scalar(HERTZ, "where the band begins").or("0.0001 Hz"),
+    TO.scalar(HERTZ, "where the band ends").or("10 Hz"),
 ];
 
 pub(super) static KIND: TermKind = TermKind {
@@ -28,47 +33,32 @@ pub(super) static KIND: TermKind = TermKind {
     needs: &[],
     keys: |_| {
         vec![
-            Key {
-                name: "flicker",
-                takes: Takes::Flag,
-                default: None,
-                about: "whether `bias_instability` is B of a 1/f spectrum, with no correlation time",
-            },
-            Key {
-                name: "flicker_band",
-                takes: Takes::Table(Nested {
-                    keys: &BAND,
-                    alone: None,
-                    many: false,
-                    example: "{ from = \"0.0001 Hz\", to = \"10 Hz\" }",
-                }),
-                default: None,
-                about: "over which the spectrum is 1/f",
-            },
+            FLICKER.flag("whether `bias_instability` is B of a 1/f spectrum, with no correlation time"),
+            FLICKER_BAND.table(
+                &BAND,
+                None,
+                "{ from = \"0.0001 Hz\", to = \"10 Hz\" }",
+                "over which the spectrum is 1/f",
+            ),
         ]
     },
     build: |values, context| {
-        let sigma = values.vector("bias_instability").unwrap_or_default();
-        if !is_on(values) {
+        let sigma = values.get(BIAS_INSTABILITY).unwrap_or_default();
+        if !is_flicker(values) {
             return Ok(None);
         }
         if sigma == DVec3::ZERO {
-            return Err(KeyError::new("flicker", "needs a `bias_instability` too, such as \"10 deg/h\""));
+            return Err(KeyError::new(FLICKER, "needs a `bias_instability` too, such as \"10 deg/h\""));
         }
-        let band = values.table("flicker_band");
-        let end = |key, default| band.and_then(|band| band.scalar(key)).unwrap_or(default);
-        let (from, to) = (end("from", 1e-4), end("to", 10.0));
+        let band = values.get(FLICKER_BAND);
+        let end = |name, default| band.and_then(|band| band.get(name)).unwrap_or(default);
+        let (from, to) = (end(FROM, 1e-4), end(TO, 10.0));
         if from >= to {
-            return Err(KeyError::new("flicker_band", "needs `from` below `to`"));
+            return Err(KeyError::new(FLICKER_BAND, "needs `from` below `to`"));
         }
         Ok(Some(Box::new(Flicker::new(sigma, from, to, context))))
     },
 };
-
-/// Whether the bias instability is one of this kind.
-pub(super) fn is_on(values: &Values) -> bool {
-    values.flag("flicker") == Some(true)
-}
 
 /// One Gauss-Markov process on three axes.
 struct Process {

@@ -2,9 +2,12 @@
 //! *Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems*, 2nd ed., eq. 4.17).
 
 use super::{Block, Column, Kinds, SensorKind, Stage, Term, TermKind, linear};
-use crate::keys::{Key, Takes};
+use crate::keys::Name;
 use crate::quantity::Kind;
 use glam::DMat3;
+
+/// Bias for each m/s² of specific force, rad/s, in body axes.
+pub const G_SENSITIVITY: Name<DMat3> = Name::new("g_sensitivity");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "g_sensitivity",
@@ -13,15 +16,13 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Bias,
     needs: &[Column::Force],
     keys: |_| {
-        vec![Key {
-            name: "g_sensitivity",
-            takes: Takes::Matrix(Kind::G_SENSITIVITY),
-            default: None,
-            about: "bias for each g of specific force, along the same axis (a vector) or across (three rows)",
-        }]
+        vec![G_SENSITIVITY.matrix(
+            Kind::G_SENSITIVITY,
+            "bias for each g of specific force, along the same axis (a vector) or across (three rows)",
+        )]
     },
     build: |values, _| {
-        let matrix = values.matrix("g_sensitivity").unwrap_or(DMat3::ZERO);
+        let matrix = values.get(G_SENSITIVITY).unwrap_or(DMat3::ZERO);
         Ok((matrix != DMat3::ZERO).then(|| Box::new(GSensitivity(matrix)) as Box<dyn Term>))
     },
 };

@@ -2,9 +2,12 @@
 //! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
 
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
-use crate::keys::{Key, Takes};
+use crate::keys::Name;
 use crate::quantity::Kind;
 use glam::DVec3;
+
+/// The field of the vehicle's magnetised parts, µT, in body axes.
+pub const HARD_IRON: Name<DVec3> = Name::new("hard_iron");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "hard_iron",
@@ -12,16 +15,9 @@ pub(super) static KIND: TermKind = TermKind {
     serves: Kinds::of(&[SensorKind::Mag]),
     stage: Stage::Signal,
     needs: &[],
-    keys: |_| {
-        vec![Key {
-            name: "hard_iron",
-            takes: Takes::BodyVector(Kind::FIELD),
-            default: Some("0"),
-            about: "field of the vehicle's magnetised parts",
-        }]
-    },
+    keys: |_| vec![HARD_IRON.body_vector(Kind::FIELD, "field of the vehicle's magnetised parts").or("0")],
     build: |values, _| {
-        let field = values.vector("hard_iron").unwrap_or_default();
+        let field = values.get(HARD_IRON).unwrap_or_default();
         Ok((field != DVec3::ZERO).then(|| Box::new(HardIron(field)) as Box<dyn Term>))
     },
 };

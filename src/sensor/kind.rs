@@ -240,13 +240,12 @@ impl SensorKind {
 
     /// A term's key as a sensor of this kind takes it: of one component, or along nav axes. A time is no component.
     pub(super) fn turned(self, key: Key) -> Key {
-        let takes = match (self.shape(), key.takes) {
-            (_, Takes::PerAxis(time)) if time.name() == Kind::TIME.name() => key.takes,
-            (Shape::Pressure, Takes::PerAxis(one) | Takes::BodyVector(one)) => Takes::OneAxis(one),
-            (Shape::Position, Takes::PerAxis(three) | Takes::BodyVector(three)) => Takes::NavVector(three),
-            _ => key.takes,
-        };
-        Key { takes, ..key }
+        match (self.shape(), key.takes()) {
+            (_, Takes::PerAxis(time)) if time.name() == Kind::TIME.name() => key,
+            (Shape::Pressure, _) => key.of_one_axis(),
+            (Shape::Position, _) => key.along_nav(),
+            (Shape::Triad, _) => key,
+        }
     }
 }
 

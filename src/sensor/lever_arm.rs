@@ -4,9 +4,11 @@
 
 use super::{Block, Column, Kinds, SensorKind, Stage, Term, TermKind};
 use crate::geometry::{Body, Vector};
-use crate::keys::{Key, Takes, Values};
+use crate::keys::{Name, Values};
 use crate::quantity::Kind;
 use glam::DVec3;
+
+const LEVER_ARM: Name<DVec3> = Name::new("lever_arm");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "lever_arm",
@@ -15,19 +17,18 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Signal,
     needs: &[Column::LeverArm],
     keys: |_| {
-        vec![Key {
-            name: "lever_arm",
-            takes: Takes::BodyVector(Kind::LENGTH),
-            default: Some("0"),
-            about: "from the motion's reference point to the accelerometer",
-        }]
+        vec![
+            LEVER_ARM
+                .body_vector(Kind::LENGTH, "from the motion's reference point to the accelerometer")
+                .or("0"),
+        ]
     },
     build: |values, _| Ok(lever_arm(values).map(|_| Box::new(LeverArm) as Box<dyn Term>)),
 };
 
 /// From the point that moves to the sensor, m, in body axes; `None` where it is at that point.
 pub fn lever_arm(values: &Values) -> Option<DVec3> {
-    values.vector("lever_arm").filter(|arm| *arm != DVec3::ZERO)
+    values.get(LEVER_ARM).filter(|arm| *arm != DVec3::ZERO)
 }
 
 /// The acceleration at `arm` (m) beyond that of the point that moves, m/s², at an angular rate (rad/s) and its

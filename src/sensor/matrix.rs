@@ -7,9 +7,13 @@
 
 use super::{Block, Kinds, Stage, Term, TermKind, linear};
 use crate::geometry;
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{KeyError, Name, Values};
 use crate::quantity::Kind;
 use glam::{DMat3, DVec3};
+
+const SCALE_ERROR: Name<DVec3> = Name::new("scale_error");
+const MISALIGNMENT: Name<DVec3> = Name::new("misalignment");
+const MATRIX: Name<DMat3> = Name::new("matrix");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "matrix",
@@ -19,31 +23,21 @@ pub(super) static KIND: TermKind = TermKind {
     needs: &[],
     keys: |_| {
         vec![
-            Key {
-                name: "scale_error",
-                takes: Takes::PerAxis(Kind::RATIO),
-                default: Some("0"),
-                about: "how much more than the truth an axis reads",
-            },
-            Key {
-                name: "misalignment",
-                takes: Takes::BodyVector(Kind::ANGLE),
-                default: Some("0"),
-                about: "rotation vector of the sensor's axes relative to the body's",
-            },
-            Key {
-                name: "matrix",
-                takes: Takes::Matrix(Kind::RATIO),
-                default: None,
-                about: "matrix that multiplies an error-free reading, after scale error and misalignment",
-            },
+            SCALE_ERROR.per_axis(Kind::RATIO, "how much more than the truth an axis reads").or("0"),
+            MISALIGNMENT
+                .body_vector(Kind::ANGLE, "rotation vector of the sensor's axes relative to the body's")
+                .or("0"),
+            MATRIX.matrix(
+                Kind::RATIO,
+                "matrix that multiplies an error-free reading, after scale error and misalignment",
+            ),
         ]
     },
     build: |values, _| {
         let matrix = matrix(values);
         if matrix.determinant().abs() < 1e-12 {
             let message = "this matrix has no inverse: it loses an axis; an error-free one is [[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
-            let key = if values.has("matrix") { "matrix" } else { "scale_error" };
+            let key = if values.has(MATRIX) { MATRIX.name() } else { SCALE_ERROR.name() };
             return Err(KeyError::new(key, message));
         }
         Ok((matrix != DMat3::IDENTITY).then(|| Box::new(Matrix(matrix)) as Box<dyn Term>))
@@ -52,9 +46,9 @@ pub(super) static KIND: TermKind = TermKind {
 
 /// What scale error, misalignment and cross-coupling multiply a signal by, in body axes.
 pub fn matrix(values: &Values) -> DMat3 {
-    let scale = DVec3::ONE + values.vector("scale_error").unwrap_or_default();
-    let turned = DMat3::from_quat(geometry::exp(-values.vector("misalignment").unwrap_or_default()));
-    values.matrix("matrix").unwrap_or_default() * DMat3::from_diagonal(scale) * turned
+    let scale = DVec3::ONE + values.get(SCALE_ERROR).unwrap_or_default();
+    let turned = DMat3::from_quat(geometry::exp(-values.get(MISALIGNMENT).unwrap_or_default()));
+    values.get(MATRIX).unwrap_or_default() * DMat3::from_diagonal(scale) * turned
 }
 
 struct Matrix(DMat3);

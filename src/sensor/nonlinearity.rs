@@ -4,11 +4,15 @@
 //! (least greatest deviation) is the signal itself and whose greatest deviation is n of full scale R, at ±R/2 and at
 //! ±R (Chebyshev's T₃; "best-fit straight line" of datasheets, IEEE Std 528). Beyond full scale it stays n·R.
 
+use super::converter::RANGE;
 use super::mount::Mount;
 use super::{Block, Kinds, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Takes};
+use crate::keys::{KeyError, Name};
 use crate::quantity::Kind;
 use glam::DVec3;
+
+/// The greatest deviation from the best straight line, per axis, a ratio of full scale.
+pub const NONLINEARITY: Name<DVec3> = Name::new("nonlinearity");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "nonlinearity",
@@ -17,24 +21,21 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {
-        vec![Key {
-            name: "nonlinearity",
-            takes: Takes::PerAxis(Kind::RATIO),
-            default: Some("0"),
-            about: "greatest deviation from the best straight line, of full scale: needs a `range`; on the chip's axes if its mount is oblique",
-        }]
+        vec![NONLINEARITY.per_axis(
+            Kind::RATIO,
+            "greatest deviation from the best straight line, of full scale: needs a `range`; on the chip's axes if its mount is oblique").or("0")]
     },
     build: |values, context| {
-        let bend = values.vector("nonlinearity").unwrap_or_default();
+        let bend = values.get(NONLINEARITY).unwrap_or_default();
         if bend == DVec3::ZERO {
             return Ok(None);
         }
-        let Some(range) = values.scalar("range") else {
+        let Some(range) = values.get(RANGE) else {
             let message = format!(
                 "is a fraction of full scale, so it also needs a `range`, such as range = \"{}\"",
                 context.sensor.units().reading.example()
             );
-            return Err(KeyError::new("nonlinearity", message));
+            return Err(KeyError::new(NONLINEARITY, message));
         };
         Ok(Some(Box::new(Bend { bend: bend * range, range, mount: context.mount })))
     },

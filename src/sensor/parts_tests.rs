@@ -2,6 +2,7 @@
 
 use super::parts;
 use super::*;
+use crate::keys::Name;
 use crate::scene::{self, Plan};
 
 fn plan(part: &str, kind: SensorKind, more: &str, seed: u64) -> Result<Plan, String> {
@@ -146,8 +147,7 @@ fn a_part_alone_draws_its_turn_on_bias_from_the_tolerance() {
         ("MPU-6050", SensorKind::Accel, [50.0 * mg, 50.0 * mg, 80.0 * mg]),
         ("MPU-9250", SensorKind::Accel, [60.0 * mg, 60.0 * mg, 80.0 * mg]),
     ] {
-        let draw =
-            |seed| plan(part, kind, "", seed).unwrap().sensors[0].values.vector("bias").unwrap().to_array();
+        let draw = |seed| plan(part, kind, "", seed).unwrap().sensors[0].values.get(BIAS).unwrap().to_array();
         let runs: Vec<_> = (0..300).map(draw).collect();
         for axis in 0..3 {
             uniform(&runs.iter().map(|run| run[axis]).collect::<Vec<_>>(), limits[axis] * (1.0 + 1e-12));
@@ -158,23 +158,22 @@ fn a_part_alone_draws_its_turn_on_bias_from_the_tolerance() {
 /// Every other value that is drawn is within its tolerance too, with either sign, and differs from axis to axis.
 #[test]
 fn a_scale_and_a_misalignment_are_drawn_from_the_tolerance_with_either_sign() {
+    let scale_error = Name::<DVec3>::new("scale_error");
     for (part, kind, key, limit) in [
-        ("MPU-6050", SensorKind::Gyro, "scale_error", 0.03),
-        ("MPU-9250", SensorKind::Accel, "scale_error", 0.03),
-        ("ICM-20948", SensorKind::Accel, "scale_error", 0.005),
-        ("MPU-9250", SensorKind::Gyro, "misalignment", 0.02),
-        ("MPU-6050", SensorKind::Gyro, "nonlinearity", 0.002),
+        ("MPU-6050", SensorKind::Gyro, scale_error, 0.03),
+        ("MPU-9250", SensorKind::Accel, scale_error, 0.03),
+        ("ICM-20948", SensorKind::Accel, scale_error, 0.005),
+        ("MPU-9250", SensorKind::Gyro, Name::new("misalignment"), 0.02),
+        ("MPU-6050", SensorKind::Gyro, NONLINEARITY, 0.002),
     ] {
-        let draw =
-            |seed| plan(part, kind, "", seed).unwrap().sensors[0].values.vector(key).unwrap().to_array();
+        let draw = |seed| plan(part, kind, "", seed).unwrap().sensors[0].values.get(key).unwrap().to_array();
         let runs: Vec<_> = (0..300).map(draw).collect();
         for axis in 0..3 {
             uniform(&runs.iter().map(|run| run[axis]).collect::<Vec<_>>(), limit * (1.0 + 1e-12));
         }
     }
-    let draw = |seed| {
-        plan("MPU-6050", SensorKind::Gyro, "", seed).unwrap().sensors[0].values.matrix("g_sensitivity")
-    };
+    let draw =
+        |seed| plan("MPU-6050", SensorKind::Gyro, "", seed).unwrap().sensors[0].values.get(G_SENSITIVITY);
     let runs: Vec<_> = (0..300).filter_map(draw).collect();
     let limit = 0.1 * DPS / G * (1.0 + 1e-12);
     for axis in 0..3 {
@@ -311,8 +310,8 @@ fn a_named_filter_is_the_one_of_the_rate() {
         let again = Plan::parse(&plan.resolved, "s.toml", "s", &[]).unwrap();
         let of = |plan: &Plan| {
             let values = &plan.sensors[0].values;
-            let filter = values.table("filter").unwrap();
-            (filter.scalar("low_pass").unwrap(), filter.whole("order"), delay(values))
+            let filter = values.get(FILTER).unwrap();
+            (filter.get(LOW_PASS).unwrap(), filter.get(Name::<u64>::new("order")), delay(values))
         };
         assert_eq!(of(&plan), of(&again), "as resolved");
         of(&plan)
@@ -355,7 +354,7 @@ fn a_named_filter_has_the_bandwidth_and_the_delay_of_the_register_map() {
         for (i, (hz, ms)) in settings.into_iter().enumerate() {
             let plan = plan(part, kind, &format!("filter = \"dlpf {i}\""), 1).unwrap();
             let values = &plan.sensors[0].values;
-            let low_pass = values.table("filter").and_then(|filter| filter.scalar("low_pass")).unwrap();
+            let low_pass = values.get(FILTER).and_then(|filter| filter.get(LOW_PASS)).unwrap();
             assert_eq!(low_pass, hz, "{part} {i}");
             let own = 1e3 / (std::f64::consts::TAU * hz);
             let total = delay(values).seconds() * 1e3 + own;

@@ -1,9 +1,8 @@
 //! Range: a reading beyond full scale stays at full scale and is flagged.
 
+use super::converter::{RANGE, limits};
 use super::mount::Mount;
-use super::resolution::{self, Converter};
-use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Takes, Values};
+use super::{Block, Kinds, Stage, Term, TermKind};
 use crate::quantity::Sign;
 
 pub(super) static KIND: TermKind = TermKind {
@@ -13,31 +12,16 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Reading,
     needs: &[],
     keys: |sensor| {
-        vec![Key {
-            name: "range",
-            takes: Takes::Scalar(sensor.units().reading.signed(Sign::Positive)),
-            default: None,
-            about: "full scale: readings are clipped to ± this on the chip's axes",
-        }]
+        vec![RANGE.scalar(
+            sensor.units().reading.signed(Sign::Positive),
+            "full scale: readings are clipped to ± this on the chip's axes",
+        )]
     },
     build: |values, context| {
         let clip = |(low, high)| Box::new(Clip { low, high, mount: context.mount }) as Box<dyn Term>;
         Ok(limits(values, context.sensor)?.map(clip))
     },
 };
-
-/// The least and greatest reading on a chip's axis, in the reading's unit; `None` where nothing clips.
-///
-/// # Errors
-/// A resolution that cannot be.
-pub fn limits(values: &Values, sensor: SensorKind) -> Result<Option<(f64, f64)>, KeyError> {
-    let Some(range) = values.scalar("range") else { return Ok(None) };
-    let limits = match resolution::converter(values, sensor)? {
-        Some(Converter { lsb, counts: Some((low, high)) }) => (low * lsb, high * lsb),
-        _ => (-range, range),
-    };
-    Ok(Some((limits.0.max(-range), limits.1.min(range))))
-}
 
 struct Clip {
     low: f64,

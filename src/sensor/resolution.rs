@@ -1,9 +1,8 @@
 //! Resolution: a reading is a whole number of counts on the chip's axes, rounded half away from zero.
 
+use super::converter::{RESOLUTION, converter};
 use super::mount::Mount;
-use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Takes, Values};
-use crate::quantity::{self, Resolution};
+use super::{Block, Kinds, Stage, Term, TermKind};
 
 pub(super) static KIND: TermKind = TermKind {
     name: "resolution",
@@ -12,12 +11,10 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Reading,
     needs: &[],
     keys: |sensor| {
-        vec![Key {
-            name: "resolution",
-            takes: Takes::Resolution(sensor.units().resolution),
-            default: None,
-            about: "the size of a count (\"0.15 uT\"), counts per unit (\"16.4 LSB/(deg/s)\"), or bits over ± the range (\"16 bit\")",
-        }]
+        vec![RESOLUTION.resolution(
+            sensor.units().resolution,
+            "the size of a count (\"0.15 uT\"), counts per unit (\"16.4 LSB/(deg/s)\"), or bits over ± the range (\"16 bit\")",
+        )]
     },
     build: |values, context| {
         Ok(converter(values, context.sensor)?.map(|converter| {
@@ -25,52 +22,6 @@ pub(super) static KIND: TermKind = TermKind {
         }))
     },
 };
-
-/// What turns a reading to counts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Converter {
-    /// The size of one count.
-    pub lsb: f64,
-    /// The least and greatest count, where the range tells how many bits there are.
-    pub counts: Option<(f64, f64)>,
-}
-
-/// The size of one count in the reading's unit, if the plan's readings come in counts.
-pub fn lsb(values: &Values, sensor: SensorKind) -> Option<f64> {
-    converter(values, sensor).ok().flatten().map(|converter| converter.lsb)
-}
-
-pub(super) fn converter(values: &Values, sensor: SensorKind) -> Result<Option<Converter>, KeyError> {
-    let Some(resolution) = values.resolution("resolution") else { return Ok(None) };
-    let range = values.scalar("range");
-    let lsb = match (resolution, range) {
-        (Resolution::Step(lsb), _) => lsb.to_f64(),
-        (Resolution::Bits(bits), Some(range)) => range / libm::exp2(f64::from(bits) - 1.0),
-        (Resolution::Bits(_), None) => {
-            let message = format!(
-                "bits also need a `range`; or give the size of a count, such as \"1e-4 {}\"",
-                sensor.unit()
-            );
-            return Err(KeyError::new("resolution", message));
-        }
-    };
-    if let Some(range) = range.filter(|&range| lsb > range) {
-        let (count, range) =
-            (quantity::text_scalar(lsb, sensor.unit()), quantity::text_scalar(range, sensor.unit()));
-        return Err(KeyError::new(
-            "resolution",
-            format!("one count, {count}, is more than the whole range of ±{range}"),
-        ));
-    }
-    Ok(Some(Converter { lsb, counts: range.and_then(|range| two_complement(range / lsb)) }))
-}
-
-/// The limits of a two's-complement converter whose full scale is this many counts: a part's sheet gives 2000 °/s
-/// at 16.4 LSB/(°/s), which is 32 800, and means 16 bits. `None` if no power of two is within 1 %.
-fn two_complement(full_scale: f64) -> Option<(f64, f64)> {
-    let counts = libm::exp2(libm::round(libm::log2(full_scale)));
-    ((full_scale / counts - 1.0).abs() < 0.01).then_some((-counts, counts - 1.0))
-}
 
 struct Quantise {
     lsb: f64,

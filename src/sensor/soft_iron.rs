@@ -2,9 +2,11 @@
 //! et al., *Geometric approach to strapdown magnetometer calibration in sensor frame*, IEEE TAES 47(2), 2011, eq. 2).
 
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind, linear};
-use crate::keys::{Key, Takes};
+use crate::keys::Name;
 use crate::quantity::Kind;
 use glam::DMat3;
+
+const SOFT_IRON: Name<DMat3> = Name::new("soft_iron");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "soft_iron",
@@ -13,15 +15,13 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {
-        vec![Key {
-            name: "soft_iron",
-            takes: Takes::Matrix(Kind::RATIO),
-            default: None,
-            about: "matrix that multiplies the field around the magnetometer; identity without soft iron",
-        }]
+        vec![SOFT_IRON.matrix(
+            Kind::RATIO,
+            "matrix that multiplies the field around the magnetometer; identity without soft iron",
+        )]
     },
     build: |values, _| {
-        let matrix = values.matrix("soft_iron").unwrap_or_default();
+        let matrix = values.get(SOFT_IRON).unwrap_or_default();
         Ok((matrix != DMat3::IDENTITY).then(|| Box::new(SoftIron(matrix)) as Box<dyn Term>))
     },
 };

@@ -5,32 +5,23 @@
 
 use super::strides::{STRIDE, strides};
 use super::{Block, Context, Kinds, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Nested, Takes};
+use crate::keys::{Key, KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::{Rate, SimTime};
 
 /// Where temperature coefficients count from, and what packets report of a sensor without a temperature, °C.
 pub const REFERENCE: f64 = 25.0;
 
+/// The part's temperature, a table of its own.
+pub const TEMPERATURE: Name<Values> = Name::new("temperature");
+const AMBIENT: Name<f64> = Name::new("ambient");
+const RISE: Name<f64> = Name::new("rise");
+const TIME_CONSTANT: Name<f64> = Name::new("time_constant");
+
 static KEYS: [Key; 3] = [
-    Key {
-        name: "ambient",
-        takes: Takes::Scalar(Kind::TEMPERATURE),
-        default: Some("25 degC"),
-        about: "at the start",
-    },
-    Key {
-        name: "rise",
-        takes: Takes::Scalar(Kind::TEMPERATURE_DIFFERENCE),
-        default: Some("0 K"),
-        about: "the total temperature rise",
-    },
-    Key {
-        name: "time_constant",
-        takes: Takes::Scalar(Kind::TIME.signed(Sign::Positive)),
-        default: None,
-        about: "after which all but 1/e of the rise is done",
-    },
+    AMBIENT.scalar(Kind::TEMPERATURE, "at the start").or("25 degC"),
+    RISE.scalar(Kind::TEMPERATURE_DIFFERENCE, "the total temperature rise").or("0 K"),
+    TIME_CONSTANT.scalar(Kind::TIME.signed(Sign::Positive), "after which all but 1/e of the rise is done"),
 ];
 
 pub(super) static KIND: TermKind = TermKind {
@@ -40,26 +31,20 @@ pub(super) static KIND: TermKind = TermKind {
     stage: Stage::Signal,
     needs: &[],
     keys: |_| {
-        vec![Key {
-            name: "temperature",
-            takes: Takes::Table(Nested {
-                keys: &KEYS,
-                alone: Some("ambient"),
-                many: false,
-                example: "\"35 degC\", or { ambient = \"25 degC\", rise = \"15 K\", time_constant = \"60 s\" } for a part that warms up",
-            }),
-            default: None,
-            about: "the part's temperature (default 25 degC)",
-        }]
+        vec![TEMPERATURE.table(
+            &KEYS,
+            Some(AMBIENT.name()),
+            "\"35 degC\", or { ambient = \"25 degC\", rise = \"15 K\", time_constant = \"60 s\" } for a part that warms up",
+            "the part's temperature (default 25 degC)",
+        )]
     },
     build: |values, context| {
-        let Some(given) = values.table("temperature") else { return Ok(None) };
-        let (ambient, rise) = (given.scalar("ambient"), given.scalar("rise"));
-        let (ambient, rise) = (ambient.unwrap_or(REFERENCE), rise.unwrap_or_default());
-        let tau = given.scalar("time_constant");
+        let Some(given) = values.get(TEMPERATURE) else { return Ok(None) };
+        let ambient = given.get(AMBIENT).unwrap_or(REFERENCE);
+        let (rise, tau) = (given.get(RISE).unwrap_or_default(), given.get(TIME_CONSTANT));
         if rise != 0.0 && tau.is_none() {
             let message = "a rise also needs a `time_constant`, such as \"60 s\"";
-            return Err(KeyError::new("temperature", message));
+            return Err(KeyError::new(TEMPERATURE, message));
         }
         Ok(Some(Box::new(Warming::new(ambient, rise, tau.unwrap_or(1.0), context))))
     },

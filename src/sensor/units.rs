@@ -1,6 +1,13 @@
 //! Which units a sensor's keys take.
 
+use crate::keys::Name;
 use crate::quantity::Kind;
+use glam::DVec3;
+
+/// The Allan deviation of an angle at 1 s, per axis, rad/√s.
+pub(super) const ANGLE_RANDOM_WALK: Name<DVec3> = Name::new("angle_random_walk");
+/// The Allan deviation of a velocity at 1 s, per axis, m/s/√s.
+pub(super) const VELOCITY_RANDOM_WALK: Name<DVec3> = Name::new("velocity_random_walk");
 
 /// The kinds of quantity that one sensor's keys take.
 #[derive(Debug)]
@@ -12,7 +19,7 @@ pub struct Units {
     /// A one-sided noise density.
     pub density: Kind,
     /// The key and kind of the random walk of the reading's integral, where the field has a name for it.
-    pub random_walk: Option<(&'static str, Kind)>,
+    pub random_walk: Option<(Name<DVec3>, Kind)>,
     /// The driving noise of a bias walk.
     pub bias_walk: Kind,
     /// The size of a count, counts a unit, or bits.
@@ -25,7 +32,7 @@ pub(super) static GYRO_UNITS: Units = Units {
     reading: Kind::ANGULAR_RATE,
     variance: Kind::GYRO_VARIANCE,
     density: Kind::GYRO_DENSITY,
-    random_walk: Some(("angle_random_walk", Kind::ANGLE_RANDOM_WALK)),
+    random_walk: Some((ANGLE_RANDOM_WALK, Kind::ANGLE_RANDOM_WALK)),
     bias_walk: Kind::GYRO_WALK,
     resolution: Kind::GYRO_RESOLUTION,
     per_kelvin: Some(Kind::GYRO_PER_KELVIN),
@@ -34,7 +41,7 @@ pub(super) static ACCEL_UNITS: Units = Units {
     reading: Kind::ACCELERATION,
     variance: Kind::ACCEL_VARIANCE,
     density: Kind::ACCEL_DENSITY,
-    random_walk: Some(("velocity_random_walk", Kind::VELOCITY_RANDOM_WALK)),
+    random_walk: Some((VELOCITY_RANDOM_WALK, Kind::VELOCITY_RANDOM_WALK)),
     bias_walk: Kind::ACCEL_WALK,
     resolution: Kind::ACCEL_RESOLUTION,
     per_kelvin: Some(Kind::ACCEL_PER_KELVIN),

@@ -9,7 +9,7 @@
 use super::filter::LowPass;
 use super::strides::{STRIDE, strides};
 use super::{Block, Context, Kinds, Sampling, SensorKind, Stage, Term, TermKind, delay};
-use crate::keys::{Key, KeyError, Nested, Takes, Values};
+use crate::keys::{Key, KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::{Rate, SimTime};
 use glam::DVec3;
@@ -21,14 +21,20 @@ const LINES: usize = 32;
 const PROFILE: &str = "[{ frequency = \"20 Hz\", density = \"0.001 g^2/Hz\" }, { frequency = \"200 Hz\", density = \"0.01 g^2/Hz\" }]";
 const EXAMPLE: &str = "[{ frequency = \"120 Hz\", amplitude = \"[0.2, 0.2, 1] m/s^2\" }]";
 
-const HERTZ: Takes = Takes::Scalar(Kind::FREQUENCY.signed(Sign::NonNegative));
+const HERTZ: Kind = Kind::FREQUENCY.signed(Sign::NonNegative);
+
+const VIBRATION: Name<[Values]> = Name::new("vibration");
+const FREQUENCY: Name<f64> = Name::new("frequency");
+const AMPLITUDE: Name<DVec3> = Name::new("amplitude");
+const PHASE: Name<DVec3> = Name::new("phase");
+const DENSITY: Name<DVec3> = Name::new("density");
+const FROM: Name<f64> = Name::new("from");
+const TO: Name<f64> = Name::new("to");
+const SPECTRUM: Name<[Values]> = Name::new("spectrum");
 
 /// A point of a spectrum.
 const fn point(spectrum: Kind) -> [Key; 2] {
-    [
-        Key { name: "frequency", takes: HERTZ, default: None, about: "of the point" },
-        Key { name: "density", takes: Takes::PerAxis(spectrum), default: None, about: "there, one-sided" },
-    ]
+    [FREQUENCY.scalar(HERTZ, "of the point"), DENSITY.per_axis(spectrum, "there, one-sided")]
 }
 
 static GYRO_POINT: [Key; 2] = point(Kind::GYRO_SPECTRUM);
@@ -36,28 +42,13 @@ static ACCEL_POINT: [Key; 2] = point(Kind::ACCEL_SPECTRUM);
 
 const fn keys(reading: Kind, spectrum: Kind, point: &'static [Key]) -> [Key; 7] {
     [
-        Key { name: "frequency", takes: HERTZ, default: None, about: "of a sine" },
-        Key { name: "amplitude", takes: Takes::BodyVector(reading), default: None, about: "of the sine" },
-        Key {
-            name: "phase",
-            takes: Takes::PerAxis(Kind::ANGLE),
-            default: Some("0"),
-            about: "of the sine at t = 0",
-        },
-        Key {
-            name: "density",
-            takes: Takes::PerAxis(spectrum),
-            default: None,
-            about: "of random vibration, one-sided",
-        },
-        Key { name: "from", takes: HERTZ, default: None, about: "where its band begins" },
-        Key { name: "to", takes: HERTZ, default: None, about: "where its band ends" },
-        Key {
-            name: "spectrum",
-            takes: Takes::Table(Nested { keys: point, alone: None, many: true, example: PROFILE }),
-            default: None,
-            about: "of random vibration, as points",
-        },
+        FREQUENCY.scalar(HERTZ, "of a sine"),
+        AMPLITUDE.body_vector(reading, "of the sine"),
+        PHASE.per_axis(Kind::ANGLE, "of the sine at t = 0").or("0"),
+        DENSITY.per_axis(spectrum, "of random vibration, one-sided"),
+        FROM.scalar(HERTZ, "where its band begins"),
+        TO.scalar(HERTZ, "where its band ends"),
+        SPECTRUM.tables(point, PROFILE, "of random vibration, as points"),
     ]
 }
 
@@ -75,33 +66,33 @@ pub(super) static KIND: TermKind = TermKind {
             SensorKind::Gyro => &GYRO,
             _ => &ACCEL,
         };
-        vec![Key {
-            name: "vibration",
-            takes: Takes::Table(Nested { keys, alone: None, many: true, example: EXAMPLE }),
-            default: None,
-            about: "each a sine (`frequency`, `amplitude`, `phase`), or random (`density` over `from` to `to`, or `spectrum`, points of it)",
-        }]
+        vec![VIBRATION.tables(
+            keys,
+            EXAMPLE,
+            "each a sine (`frequency`, `amplitude`, `phase`), or random (`density` over `from` to `to`, or `spectrum`, points of it)",
+        )]
     },
     build: |values, context| {
         let mut sines = Vec::new();
-        for (i, given) in values.tables("vibration").iter().enumerate() {
-            let sine = given.scalar("frequency").zip(given.vector("amplitude"));
-            let has = |keys: &[&str]| keys.iter().any(|key| given.has(key));
-            match (sine, given.vector("density"), given.tables("spectrum")) {
-                (Some((hz, amplitude)), None, []) if !has(&["from", "to"]) => {
-                    sines.push(Sine { hz, amplitude, phase: given.vector("phase").unwrap_or_default() });
+        for (i, given) in values.get(VIBRATION).unwrap_or_default().iter().enumerate() {
+            let sine = given.get(FREQUENCY).zip(given.get(AMPLITUDE));
+            let says_sine = given.has(FREQUENCY) || given.has(AMPLITUDE);
+            let says_band = given.has(FROM) || given.has(TO);
+            match (sine, given.get(DENSITY), given.get(SPECTRUM).unwrap_or_default()) {
+                (Some((hz, amplitude)), None, []) if !says_band => {
+                    sines.push(Sine { hz, amplitude, phase: given.get(PHASE).unwrap_or_default() });
                 }
-                (None, Some(density), []) if !has(&["frequency", "amplitude"]) => {
+                (None, Some(density), []) if !says_sine => {
                     sines.extend(random(&band(given, density)?, i, context));
                 }
-                (None, None, points @ [_, ..]) if !has(&["frequency", "amplitude", "from", "to"]) => {
+                (None, None, points @ [_, ..]) if !says_sine && !says_band => {
                     sines.extend(random(&profile(points)?, i, context));
                 }
                 _ => {
                     let message = format!(
                         "an entry has a `frequency` and an `amplitude`, or a `density` with `from` and `to`, or a `spectrum`: {EXAMPLE}"
                     );
-                    return Err(KeyError::new("vibration", message));
+                    return Err(KeyError::new(VIBRATION, message));
                 }
             }
         }
@@ -125,10 +116,10 @@ type Point = (f64, DVec3);
 
 /// A band of constant density.
 fn band(given: &Values, density: DVec3) -> Result<[Point; 2], KeyError> {
-    let band = given.scalar("from").zip(given.scalar("to")).filter(|(from, to)| from < to);
+    let band = given.get(FROM).zip(given.get(TO)).filter(|(from, to)| from < to);
     let Some((from, to)) = band else {
         return Err(KeyError::new(
-            "vibration",
+            VIBRATION,
             "a `density` needs its band, `from` below `to`, such as from = \"20 Hz\", to = \"200 Hz\"",
         ));
     };
@@ -137,8 +128,8 @@ fn band(given: &Values, density: DVec3) -> Result<[Point; 2], KeyError> {
 
 /// The points of a table, refused where no line in logarithms goes through them.
 fn profile(points: &[Values]) -> Result<Vec<Point>, KeyError> {
-    let wrong = |message: String| Err(KeyError::new("vibration", format!("{message}: spectrum = {PROFILE}")));
-    let point = |values: &Values| values.scalar("frequency").zip(values.vector("density"));
+    let wrong = |message: String| Err(KeyError::new(VIBRATION, format!("{message}: spectrum = {PROFILE}")));
+    let point = |values: &Values| values.get(FREQUENCY).zip(values.get(DENSITY));
     let Some(points) = points.iter().map(point).collect::<Option<Vec<Point>>>() else {
         return wrong("each point of a `spectrum` has its `frequency` and its `density`".into());
     };

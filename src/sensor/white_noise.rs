@@ -5,12 +5,19 @@
 //! (`angle_random_walk`, `velocity_random_walk`, what Kalibr calls a noise density: σ = N·√fs).
 //! `noise_density = √2 · random walk`: a factor that users often miss.
 
+use super::units::{ANGLE_RANDOM_WALK, VELOCITY_RANDOM_WALK};
 use super::{Block, Kinds, SensorKind, Stage, Term, TermKind};
-use crate::keys::{Key, KeyError, Takes, Values};
-use crate::quantity::{Kind, Sign};
+use crate::keys::{KeyError, Name, Values};
+use crate::quantity::Sign;
 use crate::random::Normals;
 use crate::time::Rate;
 use glam::DVec3;
+
+/// The standard deviation of a sample, per axis, in the reading's unit.
+pub const NOISE_STD: Name<DVec3> = Name::new("noise_std");
+const NOISE_VARIANCE: Name<DVec3> = Name::new("noise_variance");
+/// The one-sided density, per axis, in the reading's unit a √Hz.
+pub const NOISE_DENSITY: Name<DVec3> = Name::new("noise_density");
 
 pub(super) static KIND: TermKind = TermKind {
     name: "white_noise",
@@ -21,17 +28,17 @@ pub(super) static KIND: TermKind = TermKind {
     keys: |sensor| {
         let units = sensor.units();
         let mut keys = vec![
-            key(
-                "noise_std",
+            NOISE_STD.per_axis(
                 units.reading.signed(Sign::NonNegative),
                 "standard deviation of each sample, at any rate",
             ),
-            key("noise_variance", units.variance, "variance of each sample, at any rate (the paper's)"),
-            key("noise_density", units.density, "one-sided density, as datasheets print it: σ = N·√(rate/2)"),
+            NOISE_VARIANCE.per_axis(units.variance, "variance of each sample, at any rate (the paper's)"),
+            NOISE_DENSITY
+                .per_axis(units.density, "one-sided density, as datasheets print it: σ = N·√(rate/2)"),
         ];
-        if let Some((name, kind)) = units.random_walk {
-            keys.push(key(name, kind, "Allan deviation at 1 s, Kalibr's noise density: σ = N·√rate"));
-        }
+        keys.extend(units.random_walk.map(|(name, kind)| {
+            name.per_axis(kind, "Allan deviation at 1 s, Kalibr's noise density: σ = N·√rate")
+        }));
         keys
     },
     build: |values, context| {
@@ -43,12 +50,8 @@ pub(super) static KIND: TermKind = TermKind {
 };
 
 /// The keys of which at most one may be given for an axis.
-pub const KEYS: [&str; 5] =
-    ["noise_std", "noise_variance", "noise_density", "angle_random_walk", "velocity_random_walk"];
-
-fn key(name: &'static str, kind: Kind, about: &'static str) -> Key {
-    Key { name, takes: Takes::PerAxis(kind), default: None, about }
-}
+pub const KEYS: [Name<DVec3>; 5] =
+    [NOISE_STD, NOISE_VARIANCE, NOISE_DENSITY, ANGLE_RANDOM_WALK, VELOCITY_RANDOM_WALK];
 
 /// The standard deviation of one sample at the given rate, per axis, in the reading's unit.
 ///
@@ -56,9 +59,9 @@ fn key(name: &'static str, kind: Kind, about: &'static str) -> Key {
 /// Two keys for one axis.
 pub fn sigma(values: &Values, sensor: SensorKind, rate: Rate) -> Result<DVec3, KeyError> {
     let mut sigma = DVec3::ZERO;
-    let mut before: Vec<(&str, DVec3)> = Vec::new();
+    let mut before: Vec<(Name<DVec3>, DVec3)> = Vec::new();
     for key in KEYS {
-        let Some(given) = values.vector(key) else { continue };
+        let Some(given) = values.get(key) else { continue };
         // One that is zero throughout says as much of every axis as any other.
         let clash = |other: DVec3| {
             other == DVec3::ZERO || given == DVec3::ZERO || (other * given).abs().max_element() > 0.0
@@ -66,7 +69,7 @@ pub fn sigma(values: &Values, sensor: SensorKind, rate: Rate) -> Result<DVec3, K
         if let Some((other, _)) = before.iter().find(|(_, other)| clash(*other)) {
             return Err(KeyError::new(
                 key,
-                format!("the {sensor}'s white noise is already given by `{other}`: keep only one"),
+                format!("the {sensor}'s white noise is already given by `{}`: keep only one", other.name()),
             ));
         }
         before.push((key, given));
@@ -75,11 +78,11 @@ pub fn sigma(values: &Values, sensor: SensorKind, rate: Rate) -> Result<DVec3, K
     Ok(sigma)
 }
 
-fn per_sample(key: &str, given: DVec3, rate: Rate) -> DVec3 {
+fn per_sample(key: Name<DVec3>, given: DVec3, rate: Rate) -> DVec3 {
     match key {
-        "noise_std" => given,
-        "noise_variance" => DVec3::from_array(given.to_array().map(libm::sqrt)),
-        "noise_density" => given * libm::sqrt(rate.as_hz() / 2.0),
+        NOISE_STD => given,
+        NOISE_VARIANCE => DVec3::from_array(given.to_array().map(libm::sqrt)),
+        NOISE_DENSITY => given * libm::sqrt(rate.as_hz() / 2.0),
         _ => given * libm::sqrt(rate.as_hz()),
     }
 }

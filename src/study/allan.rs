@@ -7,6 +7,7 @@
 
 use crate::player::{BLOCK, Player};
 use crate::scene::Plan;
+use crate::sensor::{BIAS_INSTABILITY, CORRELATION_TIME, is_flicker};
 use crate::sensor::{SensorKind, SensorPlan, bias_step, lsb, white_noise};
 use crate::time::{NANOS, SimTime};
 use serde::Serialize;
@@ -131,10 +132,10 @@ fn variance(plan: &Plan, sensor: &SensorPlan, axis: usize, tau: f64) -> f64 {
     let white = white_noise::sigma(values, sensor.kind, sensor.rate).map_or(0.0, |sigma| sigma[axis]);
     let count = lsb(values, sensor.kind).unwrap_or(0.0);
     let step = bias_step(values, &sensor.context(plan.seed))[axis];
-    let wander = values.vector("bias_instability").unwrap_or_default()[axis];
-    let time = values.vector("correlation_time").unwrap_or_default()[axis];
+    let wander = values.get(BIAS_INSTABILITY).unwrap_or_default()[axis];
+    let time = values.get(CORRELATION_TIME).unwrap_or_default()[axis];
     let mut variance = (white * white + count * count / 12.0) / (tau * rate) + step * step * rate * tau / 3.0;
-    if values.flag("flicker") == Some(true) {
+    if is_flicker(values) {
         // Flat within its band: 2·ln 2/π of its square.
         variance += wander * wander * 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
     } else if wander > 0.0 && time > 0.0 {

@@ -1,9 +1,15 @@
 //! Faults of an output: what happens to packets on their way, during a period. `faults` applies them.
 
-use crate::keys::{Key, KeyError, Takes, Values};
+use crate::keys::{Key, KeyError, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::time::{NANOS, SimTime};
 use std::fmt;
+
+pub(super) const SHARE: Name<f64> = Name::new("share");
+pub(super) const BITS: Name<u64> = Name::new("bits");
+pub(super) const HURTS: Name<&str> = Name::new("hurts");
+pub(super) const PIECES: Name<u64> = Name::new("pieces");
+pub(super) const GAP: Name<SimTime> = Name::new("gap");
 
 /// The kinds of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,24 +49,21 @@ impl PacketFaultKind {
 
     /// Its keys besides `output`, `kind`, `start` and `duration`.
     pub fn keys(self) -> Vec<Key> {
-        let key = |name, takes, default, about| Key { name, takes, default: Some(default), about };
-        let share = |default, about| {
-            key("share", Takes::Scalar(Kind::RATIO.signed(Sign::NonNegative)), default, about)
-        };
+        let share = |default, about| SHARE.scalar(Kind::RATIO.signed(Sign::NonNegative), about).or(default);
         match self {
             PacketFaultKind::Drop => vec![share("1 %", "of the packets is missing")],
             PacketFaultKind::Corrupt => vec![
                 share("1 %", "of the packets is hurt"),
-                key("bits", Takes::Whole(1, 64), "1", "flipped in each"),
-                key("hurts", Takes::Word(&["packet", "framing"]), "packet", "what may be hit"),
+                BITS.whole(1, 64, "flipped in each").or("1"),
+                HURTS.word(&["packet", "framing"], "what may be hit"),
             ],
             PacketFaultKind::Duplicate => vec![share("1 %", "of the packets comes twice")],
             PacketFaultKind::Reorder => vec![share("1 %", "of the packets is overtaken")],
             PacketFaultKind::Stall => vec![],
             PacketFaultKind::Split => vec![
                 share("100 %", "of the packets goes out in pieces"),
-                key("pieces", Takes::Whole(2, 16), "2", "of a packet"),
-                key("gap", Takes::Duration, "1 ms", "from piece to piece"),
+                PIECES.whole(2, 16, "of a packet").or("2"),
+                GAP.duration("from piece to piece").or("1 ms"),
             ],
         }
     }
@@ -93,8 +96,8 @@ impl PacketFault {
     /// # Errors
     /// The key with a bad value, and what would be right.
     pub fn check(&self) -> Result<(), KeyError> {
-        if self.values.scalar("share").is_some_and(|share| share > 1.0) {
-            return Err(KeyError::new("share", "a share of the packets is at most 100 %"));
+        if self.values.get(SHARE).is_some_and(|share| share > 1.0) {
+            return Err(KeyError::new(SHARE, "a share of the packets is at most 100 %"));
         }
         if self.kind == PacketFaultKind::Stall && self.end - self.start > LONGEST_STALL {
             let message = format!(

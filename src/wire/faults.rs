@@ -5,7 +5,7 @@
 //! faults draw once for each packet, from the stream `output/I/fault/N/KIND`: I counts the run's outputs, N the
 //! faults of this one.
 
-use super::fault::{PacketFault, PacketFaultKind};
+use super::fault::{BITS, GAP, HURTS, PIECES, PacketFault, PacketFaultKind, SHARE};
 use super::{Packet, Protocol};
 use crate::random::{self, Stream};
 use crate::sensor::ByKind;
@@ -136,11 +136,11 @@ impl Faulty {
         Faulty {
             start: *start,
             end: *end,
-            share: values.scalar("share").unwrap_or(1.0),
-            bits: values.whole("bits").unwrap_or(1),
-            spares_framing: values.word("hurts") != Some("framing"),
-            pieces: values.whole("pieces").unwrap_or(1),
-            gap: values.time("gap").unwrap_or_default(),
+            share: values.get(SHARE).unwrap_or(1.0),
+            bits: values.get(BITS).unwrap_or(1),
+            spares_framing: values.get(HURTS) != Some("framing"),
+            pieces: values.get(PIECES).unwrap_or(1),
+            gap: values.get(GAP).unwrap_or_default(),
             protocol,
             stream,
             held: VecDeque::new(),

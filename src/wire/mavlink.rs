@@ -17,7 +17,7 @@ pub use extra::{Extra, Extras};
 use super::row::{Row, Shared};
 use super::{Controller, Encoder, EverySecond, Newest, Now, Packet, Setup};
 use crate::earth::pressure_altitude;
-use crate::sensor::{ByKind, Claims, Kinds, SensorKind};
+use crate::sensor::{ByKind, Claims, Kinds, SensorKind, TEMPERATURE};
 use crate::time::SimTime;
 use extra::Sender;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
@@ -121,7 +121,7 @@ impl Mavlink {
             warm: setup
                 .sensors
                 .iter()
-                .find(|sensor| sensor.values.has("temperature"))
+                .find(|sensor| sensor.values.has(TEMPERATURE))
                 .map(|sensor| sensor.kind),
         }
     }

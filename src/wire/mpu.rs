@@ -10,6 +10,7 @@ use super::row::Row;
 use super::{Encoder, EverySecond, Layout, Newest, Now, Packet, Setup};
 use crate::earth::STANDARD_GRAVITY;
 use crate::sensor::{ByKind, Kinds, Mount, REFERENCE_TEMPERATURE, SensorKind, SensorPlan, lsb};
+use crate::sensor::{FILTER, LOW_PASS, RANGE};
 use crate::time::SimTime;
 use ratetable_protocols::mpu::registers::{self, Chip};
 use ratetable_protocols::mpu::{self, accel, config, gyro, imu, mag};
@@ -201,7 +202,7 @@ fn scale(sensor: Option<&SensorPlan>, count: impl Fn(u8) -> f64) -> (u8, f64) {
         [0, 1, 2, 3].map(|bits| (registers::full_scale_bits(bits), count(registers::full_scale_bits(bits))));
     let wanted = sensor.and_then(|sensor| lsb(&sensor.values, sensor.kind));
     let exact = scales.iter().find(|(_, count)| wanted.is_some_and(|lsb| (lsb / count - 1.0).abs() < 1e-6));
-    let range = sensor.and_then(|sensor| sensor.values.scalar("range"));
+    let range = sensor.and_then(|sensor| sensor.values.get(RANGE));
     let holding =
         scales.iter().find(|(_, count)| range.is_some_and(|range| range <= NOMINAL * 32768.0 * count));
     *exact.or(holding).unwrap_or(&scales[3])
@@ -226,7 +227,7 @@ fn sampling(chip: Chip, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -
     if hz > 1005.0 {
         return (0, if chip == Chip::Mpu60x0 { divider(8000.0) } else { 0 });
     }
-    let filter = gyro.or(accel).and_then(|sensor| sensor.values.table("filter")?.scalar("low_pass"));
+    let filter = gyro.or(accel).and_then(|sensor| sensor.values.get(FILTER)?.get(LOW_PASS));
     let Some(cut_off) = filter else { return (1, divider(1000.0)) };
     let bandwidths = chip.gyro_bandwidths_hz();
     // Only an MPU-6050 divides 8 kHz, and by 256 at most.

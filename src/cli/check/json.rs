@@ -5,7 +5,7 @@ use crate::dataset::Bounds;
 use crate::earth;
 use crate::effects::effects;
 use crate::scene::{Plan, SweptKey};
-use crate::sensor::{Sampling, lsb};
+use crate::sensor::{RANGE, Sampling, lsb};
 use serde_json::{Value, json};
 
 pub(super) fn json(checked: &Checked<'_>) -> Value {
@@ -23,7 +23,7 @@ pub(super) fn json(checked: &Checked<'_>) -> Value {
             "noise_std": noise.as_ref().map_or(0.0, |noise| noise.per_sample),
             "noise_density": noise.as_ref().map_or(0.0, |noise| noise.density),
             "random_walk": noise.as_ref().map_or(0.0, |noise| noise.random_walk),
-            "range": sensor.values.scalar("range"),
+            "range": sensor.values.get(RANGE),
             "resolution": lsb(&sensor.values, sensor.kind),
             "terms": terms(plan, sensor),
         })

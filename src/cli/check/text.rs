@@ -6,7 +6,7 @@ use crate::cli::terminal::Stream;
 use crate::earth;
 use crate::report::{count, number};
 use crate::scene::{Drawn, Plan, Runs};
-use crate::sensor::{Claims, Sampling, SensorKind, SensorPlan, Shown, lsb};
+use crate::sensor::{Claims, RANGE, Sampling, SensorKind, SensorPlan, Shown, lsb};
 use crate::time::SimTime;
 
 pub(super) fn text(checked: &Checked<'_>) -> String {
@@ -155,7 +155,7 @@ fn manner(sensor: &SensorPlan) -> String {
     if sensor.clock() != sensor.rate {
         text += &format!(", by a clock that makes {} Hz of {}", sensor.clock().as_hz(), sensor.rate);
     }
-    if let Some(range) = sensor.values.scalar("range") {
+    if let Some(range) = sensor.values.get(RANGE) {
         text += &format!(", within ±{} {unit}", number(range * scale));
     }
     if let Some(mount) = sensor.mount {

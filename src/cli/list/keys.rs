@@ -55,7 +55,7 @@ pub fn motions() -> List {
 /// A declared key with what it takes.
 fn declared(key: &Key) -> String {
     let quantity = |kind: &Kind| format!("{}{}, such as \"{}\"", kind.name(), kind.bounds(), kind.example());
-    let takes = match &key.takes {
+    let takes = match &key.takes() {
         Takes::Scalar(kind) | Takes::OneAxis(kind) | Takes::Resolution(kind) => quantity(kind),
         Takes::PerAxis(kind) => format!("{}, for all axes or each", quantity(kind)),
         Takes::BodyVector(kind) | Takes::NavVector(kind) => format!("{}, or a vector", quantity(kind)),

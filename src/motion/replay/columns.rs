@@ -1,6 +1,7 @@
 //! Finds the columns of a log: those that the scene names, else those with known names.
 
-use crate::keys::{KeyError, Values};
+use super::{ANGULAR_RATE, EULER, FILE, QUATERNION, RATE, TIME};
+use crate::keys::{Columns, KeyError, Name, Values};
 use crate::table::{Attitudes, Choice, Clock, Set, Table, TableError, TimeColumn};
 use crate::time::Rate;
 use std::io::BufRead;
@@ -23,36 +24,35 @@ pub(super) struct When {
 }
 
 /// The keys for columns; at most one may be given.
-const TURNS: [&str; 3] = ["quaternion", "euler", "angular_rate"];
+const TURNS: [Name<Columns>; 3] = [QUATERNION, EULER, ANGULAR_RATE];
 
-pub(super) fn at(key: &'static str) -> impl Fn(TableError) -> KeyError {
+pub(super) fn at<T: ?Sized>(key: Name<T>) -> impl Fn(TableError) -> KeyError {
     move |error| KeyError::new(key, error.in_short())
 }
 
 /// The column of time, or the rate.
 pub(super) fn when<R: BufRead>(table: &Table<R>, values: &Values) -> Result<When, KeyError> {
-    if let Some(hz) = values.scalar("rate") {
-        if values.has("time") {
-            return Err(KeyError::new("rate", "is given with `time`: keep only one"));
+    if let Some(hz) = values.get(RATE) {
+        if values.has(TIME) {
+            return Err(KeyError::new(RATE, "is given with `time`: keep only one"));
         }
         // Accurate to a billionth of a hertz.
         let rate =
             (hz.is_finite() && hz * 1e9 < 1e18).then(|| Rate::new((hz * 1e9).round() as u64, 1_000_000_000));
-        let rate = rate
-            .flatten()
-            .ok_or_else(|| KeyError::new("rate", "takes a rate above 0, such as \"200 Hz\""))?;
+        let rate =
+            rate.flatten().ok_or_else(|| KeyError::new(RATE, "takes a rate above 0, such as \"200 Hz\""))?;
         return Ok(When { clock: Clock::Rate(rate), ns: None });
     }
-    if let Some((names, unit)) = values.columns("time") {
+    if let Some((names, unit)) = values.get(TIME) {
         let ns = (unit * 1e9).round();
         if ns < 1.0 {
-            return Err(KeyError::new("time", "takes a unit of a nanosecond or more, such as \"ns\""));
+            return Err(KeyError::new(TIME, "takes a unit of a nanosecond or more, such as \"ns\""));
         }
-        let [column] = picks(table, "time", names)?;
+        let [column] = picks(table, TIME, names)?;
         let time = TimeColumn { column, fine: None, unit: None };
         return Ok(When { clock: Clock::Column { time, assumed: None }, ns: Some(ns as i64) });
     }
-    let clock = table.clock(&Choice::default()).map_err(at("file"))?;
+    let clock = table.clock(&Choice::default()).map_err(at(FILE))?;
     clock.map(|clock| When { clock, ns: None }).ok_or_else(|| {
         lacking(
             table,
@@ -67,30 +67,30 @@ pub(super) fn turns<R: BufRead>(
     values: &Values,
     warnings: &mut Vec<String>,
 ) -> Result<Turns, KeyError> {
-    let given: Vec<_> = TURNS.into_iter().filter(|key| values.has(key)).collect();
+    let given: Vec<_> = TURNS.into_iter().filter(|key| values.has(*key)).collect();
     if let [first, second, ..] = given[..] {
-        return Err(KeyError::new(second, format!("is given with `{first}`: keep only one")));
+        return Err(KeyError::new(second, format!("is given with `{}`: keep only one", first.name())));
     }
-    if let Some((key, (names, unit))) = given.first().and_then(|key| Some((*key, values.columns(key)?))) {
-        return Ok(match key {
-            "quaternion" => Turns::Quaternion(picks(table, key, names)?),
-            "euler" => Turns::Euler(picks(table, key, names)?, unit),
-            _ => Turns::Rate(picks(table, key, names)?, unit),
-        });
+    if let Some((names, _)) = values.get(QUATERNION) {
+        return Ok(Turns::Quaternion(picks(table, QUATERNION, names)?));
+    }
+    if let Some((names, unit)) = values.get(EULER) {
+        return Ok(Turns::Euler(picks(table, EULER, names)?, unit));
+    }
+    if let Some((names, unit)) = values.get(ANGULAR_RATE) {
+        return Ok(Turns::Rate(picks(table, ANGULAR_RATE, names)?, unit));
     }
     let rates = table.angular_rate();
-    let attitude = table.attitude(&Choice::default()).map_err(at("file"))?;
+    let attitude = table.attitude(&Choice::default()).map_err(at(FILE))?;
     match (attitude, rates) {
         (Some(Attitudes::Quaternion(set)), _) => {
             tell(table, &set, warnings);
             Ok(Turns::Quaternion(set.columns))
         }
         (Some(Attitudes::Euler(set)), rates) if set.unit.is_some() || rates.is_none() => {
-            Ok(Turns::Euler(set.columns, known(table, &set, "euler", "deg", warnings)?))
+            Ok(Turns::Euler(set.columns, known(table, &set, EULER, "deg", warnings)?))
         }
-        (_, Some(set)) => {
-            Ok(Turns::Rate(set.columns, known(table, &set, "angular_rate", "rad/s", warnings)?))
-        }
+        (_, Some(set)) => Ok(Turns::Rate(set.columns, known(table, &set, ANGULAR_RATE, "rad/s", warnings)?)),
         _ => Err(lacking(
             table,
             "has no recognised attitude or angular rate (qw, qx, qy, qz, …): name its columns, such as euler = { columns = [\"roll\", \"pitch\", \"yaw\"], unit = \"deg\" }",
@@ -102,7 +102,7 @@ pub(super) fn turns<R: BufRead>(
 fn known<R: BufRead>(
     table: &Table<R>,
     set: &Set<3>,
-    key: &str,
+    key: Name<Columns>,
     example: &str,
     warnings: &mut Vec<String>,
 ) -> Result<f64, KeyError> {
@@ -117,11 +117,12 @@ fn known<R: BufRead>(
     }
     set.unit.ok_or_else(|| {
         let message = format!(
-            "{}: {} have no unit: add {key} = {{ columns = {names:?}, unit = \"{example}\" }}",
+            "{}: {} have no unit: add {} = {{ columns = {names:?}, unit = \"{example}\" }}",
             table.place(),
-            names.join(", ")
+            names.join(", "),
+            key.name()
         );
-        KeyError::new("file", message)
+        KeyError::new(FILE, message)
     })
 }
 
@@ -145,13 +146,13 @@ fn lacking<R: BufRead>(table: &Table<R>, what: &str) -> KeyError {
             "{place} holds numbers, but the line before the first row names the columns, such as t_ns,qw,qx,qy,qz; or give them by number, such as quaternion = [\"2\", \"3\", \"4\", \"5\"] with time = {{ column = \"1\", unit = \"s\" }} or a rate"
         ),
     };
-    KeyError::new("file", message)
+    KeyError::new(FILE, message)
 }
 
 /// The indices of columns that the scene names.
 fn picks<R: BufRead, const N: usize>(
     table: &Table<R>,
-    key: &'static str,
+    key: Name<Columns>,
     names: &[String],
 ) -> Result<[usize; N], KeyError> {
     let names = <&[String; N]>::try_from(names);

@@ -2,6 +2,7 @@
 
 use super::columns::{When, at};
 use super::grid::Grid;
+use super::{FILE, TIME};
 use crate::keys::KeyError;
 use crate::table::{Clock, Flaw, Series, Table, TimeUnit, Wanted};
 use crate::time::SimTime;
@@ -42,7 +43,7 @@ impl<const N: usize> Log<N> {
         let watched = watched.map_or(Vec::new(), |columns| columns.to_vec());
         let wanted = Wanted { clock: when.clock, columns, watched };
         let make = |row: &[f64; N]| if is_nothing(row) { Err(Flaw::Zero) } else { Ok(row.map(|x| x * unit)) };
-        let series = table.read(&wanted, make).map_err(at("file"))?;
+        let series = table.read(&wanted, make).map_err(at(FILE))?;
         let times = times(&file, &series, when, column.map(|(_, name)| name))?;
         let mut warnings: Vec<_> = series.rows.told().into_iter().chain(series.remarks).collect();
         warnings.iter_mut().for_each(|warning| *warning = format!("{file}: {warning}"));
@@ -70,7 +71,7 @@ struct Within {
 }
 
 fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>) -> Result<Within, KeyError> {
-    let wrong = |message: String| Err(KeyError::new("file", message));
+    let wrong = |message: String| Err(KeyError::new(FILE, message));
     let times = &series.times;
     if times.ticks.len() < 2 {
         let count = if times.ticks.is_empty() { "no row" } else { "one row" };
@@ -100,7 +101,7 @@ fn times<T>(file: &str, series: &Series<T>, when: &When, column: Option<String>)
         ..crate::table::Times::default()
     };
     let Some(ns) = from_first.scaled(ns) else {
-        return Err(KeyError::new("time", format!("{file} lasts longer than 292 years")));
+        return Err(KeyError::new(TIME, format!("{file} lasts longer than 292 years")));
     };
     if let Some(row) = ns.windows(2).position(|pair| pair[1] <= pair[0]) {
         return wrong(format!(
@@ -123,7 +124,7 @@ fn guessed<T>(file: &str, series: &Series<T>, column: &str) -> Result<TimeUnit, 
         false => format!("{} fit its rows", plausible.join(" and ")),
     };
     Err(KeyError::new(
-        "file",
+        FILE,
         format!(
             "{file}: its column `{column}` has no unit, and {why}: add time = {{ column = \"{column}\", unit = \"{unit}\" }} or the right unit"
         ),

@@ -9,9 +9,12 @@ use super::baro::{sea_level_pressure, weather};
 use super::{Derived, InAir, Row, Senses, Shape, Shown, Table};
 use crate::earth;
 use crate::geometry::{Nav, Vector};
-use crate::keys::{Key, Takes, Values};
+use crate::keys::{Name, Values};
 use crate::quantity::Kind;
 use crate::sensor::units;
+use glam::DVec3;
+
+const WIND: Name<DVec3> = Name::new("wind");
 
 pub(super) static ROW: Row = Row {
     name: "airspeed",
@@ -25,7 +28,10 @@ pub(super) static ROW: Row = Row {
     column_unit: "pa",
     units: &units::PRESSURE_UNITS,
     usual_rate: None,
-    keys: || vec![weather(), wind_key()],
+    keys: || {
+        let about = "velocity of the air over the ground, the same everywhere: \"[0, 5, 0] m/s\" blows to the east in ned";
+        vec![weather(), WIND.nav_vector(Kind::SPEED, about).or("0")]
+    },
     may_repeat: false,
     shown: Shown::pressure("Pitot tube", "differential pressure (hPa)"),
     table: Table {
@@ -41,18 +47,9 @@ pub(super) static ROW: Row = Row {
     },
 };
 
-fn wind_key() -> Key {
-    Key {
-        name: "wind",
-        takes: Takes::NavVector(Kind::SPEED),
-        default: Some("0"),
-        about: "velocity of the air over the ground, the same everywhere: \"[0, 5, 0] m/s\" blows to the east in ned",
-    }
-}
-
 /// Velocity of the air over the ground.
 fn wind(values: &Values) -> Vector<Nav> {
-    Vector::from_vec(values.vector("wind").unwrap_or_default())
+    Vector::from_vec(values.get(WIND).unwrap_or_default())
 }
 
 /// Pa.

@@ -1,10 +1,12 @@
 //! `[baro]`: absolute air pressure.
 
 use super::{Derived, Row, Senses, Shape, Shown, Table};
-use crate::earth::{self, SEA_LEVEL_PRESSURE, pressure_altitude};
-use crate::keys::{Key, Takes, Values};
+use crate::earth::{self, pressure_altitude};
+use crate::keys::{Key, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::sensor::units;
+
+const SEA_LEVEL_PRESSURE: Name<f64> = Name::new("sea_level_pressure");
 
 pub(super) static ROW: Row = Row {
     name: "baro",
@@ -33,15 +35,12 @@ pub(super) static ROW: Row = Row {
 
 /// The key that gives the pressure at altitude 0.
 pub(super) fn weather() -> Key {
-    Key {
-        name: "sea_level_pressure",
-        takes: Takes::Scalar(Kind::PRESSURE.signed(Sign::Positive)),
-        default: Some("101325 Pa"),
-        about: "at altitude 0: the day's weather",
-    }
+    SEA_LEVEL_PRESSURE
+        .scalar(Kind::PRESSURE.signed(Sign::Positive), "at altitude 0: the day's weather")
+        .or("101325 Pa")
 }
 
 /// The pressure at altitude 0, Pa.
 pub(super) fn sea_level_pressure(values: &Values) -> f64 {
-    values.scalar("sea_level_pressure").unwrap_or(SEA_LEVEL_PRESSURE)
+    values.get(SEA_LEVEL_PRESSURE).unwrap_or(earth::SEA_LEVEL_PRESSURE)
 }

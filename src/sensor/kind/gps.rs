@@ -1,11 +1,16 @@
 //! `[gps]`: a receiver's position and velocity, with its reported accuracy.
 
 use super::{Row, Senses, Shape, Shown, Table};
-use crate::keys::{Key, Takes, Values};
+use crate::keys::{Key, Name, Values};
 use crate::quantity::{Kind, Sign};
 use crate::random::Normals;
 use crate::sensor::{Block, Kinds, SensorKind, Stage, Term, TermKind, units};
 use glam::DVec3;
+
+const EPH: Name<f64> = Name::new("eph");
+const EPV: Name<f64> = Name::new("epv");
+const SATELLITES: Name<u64> = Name::new("satellites");
+const VELOCITY_NOISE_STD: Name<DVec3> = Name::new("velocity_noise_std");
 
 pub(super) static ROW: Row = Row {
     name: "gps",
@@ -30,12 +35,11 @@ pub(super) static ROW: Row = Row {
 };
 
 fn keys() -> Vec<Key> {
-    let length = Takes::Scalar(Kind::LENGTH.signed(Sign::NonNegative));
-    let key = |name, takes, default, about| Key { name, takes, default: Some(default), about };
+    let length = Kind::LENGTH.signed(Sign::NonNegative);
     vec![
-        key("eph", length, "1 m", "horizontal accuracy that it reports"),
-        key("epv", length, "1.5 m", "vertical accuracy that it reports"),
-        key("satellites", Takes::Whole(0, 254), "12", "the number of satellites that it reports"),
+        EPH.scalar(length, "horizontal accuracy that it reports").or("1 m"),
+        EPV.scalar(length, "vertical accuracy that it reports").or("1.5 m"),
+        SATELLITES.whole(0, 254, "the number of satellites that it reports").or("12"),
     ]
 }
 
@@ -54,9 +58,9 @@ impl Claims {
     /// Of a plan's values.
     pub fn of(values: &Values) -> Claims {
         Claims {
-            eph: values.scalar("eph").unwrap_or_default(),
-            epv: values.scalar("epv").unwrap_or_default(),
-            satellites: values.whole("satellites").unwrap_or_default() as u8,
+            eph: values.get(EPH).unwrap_or_default(),
+            epv: values.get(EPV).unwrap_or_default(),
+            satellites: values.get(SATELLITES).unwrap_or_default() as u8,
         }
     }
 }
@@ -69,15 +73,17 @@ pub(crate) static VELOCITY_NOISE: TermKind = TermKind {
     stage: Stage::Reading,
     needs: &[],
     keys: |_| {
-        vec![Key {
-            name: "velocity_noise_std",
-            takes: Takes::PerAxis(Kind::SPEED.signed(Sign::NonNegative)),
-            default: Some("0"),
-            about: "standard deviation of each sample of the velocity",
-        }]
+        vec![
+            VELOCITY_NOISE_STD
+                .per_axis(
+                    Kind::SPEED.signed(Sign::NonNegative),
+                    "standard deviation of each sample of the velocity",
+                )
+                .or("0"),
+        ]
     },
     build: |values, context| {
-        let sigma = values.vector("velocity_noise_std").unwrap_or_default();
+        let sigma = values.get(VELOCITY_NOISE_STD).unwrap_or_default();
         Ok((sigma != DVec3::ZERO).then(|| {
             Box::new(VelocityNoise { sigma, normals: context.normals("velocity_noise", sigma) })
                 as Box<dyn Term>
