@@ -69,6 +69,7 @@ pub use nonlinearity::NONLINEARITY;
 pub use reading::{Fix, Measured, Measurement, Position, Reading};
 pub use temperature::{REFERENCE as REFERENCE_TEMPERATURE, TEMPERATURE};
 pub use units::Units;
+pub use vibration::VIBRATION;
 
 use crate::keys::{Key, KeyError, Values};
 use crate::os;

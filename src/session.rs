@@ -49,6 +49,7 @@ mod queue;
 mod replies;
 #[cfg(test)]
 mod session_tests;
+mod settling;
 mod shared;
 mod side;
 mod step;

@@ -91,6 +91,14 @@ pub enum Controller {
 }
 
 impl Controller {
+    /// Whether it tells its attitude on the same link while the vehicle rests.
+    pub(crate) const fn tells_rest(self) -> bool {
+        match self {
+            Controller::Px4 | Controller::Inav => true,
+            Controller::Px4Sitl | Controller::Ardupilot => false,
+        }
+    }
+
     /// Whether it answers while the scene is played: with its attitude, or in lockstep.
     pub(crate) const fn answers(self) -> bool {
         match self {

@@ -6,7 +6,8 @@ use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::link::Address;
 use crate::report::Limit;
-use crate::scene::{Destination, Output, OutputFault, Plan};
+use crate::scene::{Destination, Output, OutputFault, Plan, Target, builtin};
+use crate::sensor::SensorPlan;
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
@@ -103,6 +104,9 @@ fn job(arguments: &Arguments, plan: Plan) -> (Job, bool) {
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
     let demonstration = outputs.is_empty();
     let mut outputs = if demonstration { vec![demo_output()] } else { outputs };
+    for output in &mut outputs {
+        output.force |= arguments.force;
+    }
     for idle in OutputFault::equip(&plan.output_faults, &mut outputs) {
         tell(&format!("warning: the fault {idle} concerns no output of this run"));
     }
@@ -136,7 +140,24 @@ fn plan(arguments: &Arguments) -> Result<Plan, Refusal> {
         (None, None, None) => (DEMO_SCENE, &[][..]),
     };
     let settings = settings.iter().map(|setting| setting.to_string());
-    Ok(Plan::load(scene, &settings.chain(arguments.set.iter().cloned()).collect::<Vec<_>>())?)
+    let settings: Vec<_> = settings.chain(arguments.set.iter().cloned()).collect();
+    let plan = Plan::load(scene, &settings)?;
+    let Some(target) = target.filter(|_| builtin::text(scene).is_some()) else { return Ok(plan) };
+    let needs: Vec<_> = needs(target, &plan).map(String::from).collect();
+    if arguments.scene.is_none() || needs.is_empty() {
+        return Ok(plan);
+    }
+    tell(&format!("notice: {} gets {} (--set overrides it)", target.name, needs.join(", ")));
+    Ok(Plan::load(scene, &[needs, settings].concat())?)
+}
+
+/// What a target needs a built-in scene to be set to: the rates of those sensors that are faster than it takes.
+fn needs<'a>(target: &'a Target, plan: &'a Plan) -> impl Iterator<Item = &'static str> {
+    let most = target.most_hz.map_or(f64::INFINITY, f64::from);
+    let is_faster = move |sensor: &SensorPlan| sensor.rate.as_hz() > most;
+    let faster: Vec<_> = plan.sensors.iter().filter(|it| is_faster(it)).map(|it| it.kind.name()).collect();
+    let settings = target.settings.iter().copied();
+    settings.filter(move |setting| faster.iter().any(|name| setting.starts_with(&format!("{name}."))))
 }
 
 /// A ground station's address, and the output that it listens in on.
@@ -164,6 +185,17 @@ fn refuse(arguments: &Arguments, Job { plan, outputs, .. }: &Job) -> Result<(), 
     }
     if arguments.cpu.is_some() && arguments.speed == Speed::Max {
         return Err(Refusal("--cpu keeps the pacing thread to a processor, and --speed max paces nothing: leave out one of the two".into()));
+    }
+    for output in outputs {
+        let target = output.to.target.filter(|target| target.most_hz.is_some());
+        let most = target.and_then(|target| Some((target.name, target.most_hz?)));
+        if let Some((name, most)) = most
+            && !matches!(arguments.speed, Speed::Times(times) if times <= 1.0)
+        {
+            return Err(Refusal(format!(
+                "{name} takes at most {most} packets a second of real time: leave --speed out, or give 1 or less"
+            )));
+        }
     }
     plan.warnings.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     for output in outputs {

@@ -34,6 +34,11 @@ impl Values {
         self.0.get(name.0).and_then(T::of)
     }
 
+    /// Removes a key.
+    pub fn remove<T: ?Sized>(&mut self, name: Name<T>) {
+        self.0.remove(name.0);
+    }
+
     /// Sets a vector.
     pub fn set(&mut self, name: Name<DVec3>, vector: DVec3) {
         self.insert(name.0, Value::Triple(vector.to_array().map(Double::from)));

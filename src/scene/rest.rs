@@ -3,18 +3,23 @@
 use super::Plan;
 use crate::motion::Trajectory;
 use crate::random;
-use crate::sensor::SensorPlan;
+use crate::sensor::{SensorPlan, VIBRATION};
 use crate::time::SimTime;
 use rand::RngExt;
 
 impl Plan {
     /// The vehicle held for ever in the attitude in which the scene starts, at the same place and read by the same
     /// sensors. Their noise is their own, from a seed that follows from the scene's, so that the scene's readings
-    /// are the same with a rest before them and without; no force pushes it and no sensor has a fault.
+    /// are the same with a rest before them and without; no force pushes it, nothing vibrates and no sensor has a fault.
+    /// (ArduPilot does not finish its calibration while anything vibrates; measured.)
     pub fn at_rest(&self) -> Plan {
         let start = self.trajectory.at(SimTime::ZERO).attitude;
         let (gravity, field) = (self.trajectory.gravity(), self.trajectory.field());
-        let faultless = |sensor: &SensorPlan| SensorPlan { faults: Vec::new(), ..sensor.clone() };
+        let still = |sensor: &SensorPlan| {
+            let mut still = SensorPlan { faults: Vec::new(), ..sensor.clone() };
+            still.values.remove(VIBRATION);
+            still
+        };
         Plan {
             name: self.name.clone(),
             seed: random::stream(self.seed, "rest").random(),
@@ -24,7 +29,7 @@ impl Plan {
             day: self.day,
             limits: Vec::new(),
             trajectory: Trajectory::new(start, Vec::new(), Vec::new(), gravity, field),
-            sensors: self.sensors.iter().map(faultless).collect(),
+            sensors: self.sensors.iter().map(still).collect(),
             reference: None,
             outputs: Vec::new(),
             output_faults: Vec::new(),
@@ -94,6 +99,25 @@ mod tests {
         assert!(correlation.abs() < 4.0 / n.sqrt(), "{correlation}");
         let variance = b.iter().map(|b| b * b).sum::<f64>() / (1e-4 * n);
         assert!((variance - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "{variance}");
+    }
+
+    #[test]
+    fn at_rest_nothing_vibrates() {
+        let scene = plan(
+            "duration = \"1 s\"\n[gyro]\nrate = \"100 Hz\"\nvibration = [{ frequency = \"33 Hz\", amplitude = \"5 deg/s\" }]\n",
+        );
+        let most = |plan: &Plan| {
+            let mut most = 0.0_f64;
+            let played = Player::new(plan, SimTime(1_000_000_000), BLOCK).play(|moment| {
+                let read = |body: f64| most = most.max(body);
+                moment.readings.iter().map(|it| it.body().unwrap().value.v.length()).for_each(read);
+                Ok::<(), Infallible>(())
+            });
+            assert!(played.is_ok());
+            most
+        };
+        assert_eq!(most(&scene.at_rest()), 0.0);
+        assert!(most(&scene) > 0.05, "in the scene it does");
     }
 
     #[test]

@@ -20,8 +20,10 @@ pub struct Target {
     pub baud: Option<u32>,
     /// The vehicle is held still for at least this long, and until its estimator is up.
     pub rest: SimTime,
-    /// Samples a second that it takes at most, Hz.
+    /// Samples a second that it takes at most, Hz: it is played to in real time or slower.
     pub most_hz: Option<u32>,
+    /// Whether it asks for a number of packets a second.
+    pub asks_rate: bool,
     /// The scene it is sent by default.
     pub scene: &'static str,
     /// What that scene is set to, as by `--set`.
@@ -31,7 +33,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub static TARGETS: [Target; 4] = [
+pub static TARGETS: [Target; 5] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
@@ -41,6 +43,7 @@ pub static TARGETS: [Target; 4] = [
         baud: Some(921_600),
         rest: SimTime::ZERO,
         most_hz: None,
+        asks_rate: false,
         scene: "level-then-turn",
         settings: &[],
         asks: "ATTITUDE, ATTITUDE_QUATERNION, and the parameters that decide whether it accepts them",
@@ -54,6 +57,7 @@ pub static TARGETS: [Target; 4] = [
         baud: None,
         rest: SimTime::ZERO,
         most_hz: None,
+        asks_rate: false,
         scene: "level-then-turn",
         settings: &[],
         asks: "HIL_ACTUATOR_CONTROLS, one for each HIL_SENSOR",
@@ -65,12 +69,28 @@ pub static TARGETS: [Target; 4] = [
         controller: Controller::Ardupilot,
         link: None,
         baud: Some(115_200),
-        rest: SimTime(5 * NANOS),
+        // Its EKF aligns yaw 6.4 s after it boots (measured).
+        rest: SimTime(10 * NANOS),
         most_hz: None,
+        asks_rate: true,
         scene: "level-then-turn",
         // As many as its default baud rate carries; it asks for its own number of packets.
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
         asks: "nothing: it configures the output at the rate in EAHRS_RATE",
+    },
+    Target {
+        name: "ardupilot-mip",
+        about: "ArduPilot, whose external AHRS driver reads ratetable as a MicroStrain unit: start ratetable before it boots",
+        protocol: Protocol::Mip,
+        controller: Controller::Ardupilot,
+        link: None,
+        baud: Some(115_200),
+        rest: SimTime(10 * NANOS),
+        most_hz: None,
+        asks_rate: false,
+        scene: "level-then-turn",
+        settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
+        asks: "nothing: this unit is only listened to",
     },
     Target {
         name: "inav",
@@ -81,6 +101,7 @@ pub static TARGETS: [Target; 4] = [
         baud: Some(115_200),
         rest: SimTime(20 * NANOS),
         most_hz: Some(100),
+        asks_rate: false,
         scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
         asks: "its variant and MSP_ATTITUDE until it answers; then each simulator message is answered with its attitude",

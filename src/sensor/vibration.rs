@@ -23,7 +23,8 @@ const EXAMPLE: &str = "[{ frequency = \"120 Hz\", amplitude = \"[0.2, 0.2, 1] m/
 
 const HERTZ: Kind = Kind::FREQUENCY.signed(Sign::NonNegative);
 
-const VIBRATION: Name<[Values]> = Name::new("vibration");
+/// Sines and random vibration.
+pub const VIBRATION: Name<[Values]> = Name::new("vibration");
 const FREQUENCY: Name<f64> = Name::new("frequency");
 const AMPLITUDE: Name<DVec3> = Name::new("amplitude");
 const PHASE: Name<DVec3> = Name::new("phase");

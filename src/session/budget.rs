@@ -1,10 +1,12 @@
 //! The link budget: the bytes a second that an output needs against what its baud rate carries.
 
 use super::ways_out::WaysOut;
-use crate::link::bytes_per_second;
+use crate::link::{STANDARD_BAUDS, bytes_per_second};
 use crate::report::number;
 use crate::scene::{Destination, Output, Overload, Plan};
 use crate::sensor::SensorPlan;
+use crate::time::Rate;
+use crate::wire::dialogue::Peer;
 use crate::wire::{self, Protocol, Setup};
 use std::fmt;
 
@@ -29,17 +31,14 @@ pub struct Budget {
 impl Budget {
     /// The budget of one output of a plan that plays at `speed` scene seconds a second.
     pub fn of(plan: &Plan, output: &Output, speed: f64) -> Budget {
+        Budget::asked(plan, output, speed, Peer::default())
+    }
+
+    /// The same, where the other side may have asked for a number of packets.
+    pub(super) fn asked(plan: &Plan, output: &Output, speed: f64, peer: Peer) -> Budget {
         let load = |sensors: &[SensorPlan], protocol: Protocol, options: wire::Options| {
-            let (bytes, packets) = wire::load(
-                protocol,
-                &Setup {
-                    sensors,
-                    axes: plan.axes,
-                    day: plan.day,
-                    options,
-                    peer: wire::dialogue::Peer::default(),
-                },
-            );
+            let (bytes, packets) =
+                wire::load(protocol, &Setup { sensors, axes: plan.axes, day: plan.day, options, peer });
             (bytes * speed, packets * speed)
         };
         let (bytes_per_s, packets_per_s) = load(&plan.sensors, output.to.protocol, output.wire);
@@ -105,7 +104,7 @@ pub fn afford(
     warn: &mut dyn FnMut(String),
 ) -> Result<(), String> {
     let mut refused = Vec::new();
-    for output in outputs.iter().filter(|output| output.to.address.baud().is_some()) {
+    for output in outputs.iter().filter(|it| it.to.address.baud().is_some() && !asks_rate(it)) {
         let budget = Budget::of(plan, output, speed);
         let stretched = output.overload == Overload::Stretch;
         match budget.fits() {
@@ -118,6 +117,29 @@ pub fn afford(
         }
     }
     if refused.is_empty() { Ok(()) } else { Err(refused.join("\n")) }
+}
+
+/// The controller asks for this number of packets a second, divided by a whole number (VN-100).
+const UNIT_RATE: u64 = 800;
+
+/// Whether the controller of an output asks for its number of packets: until it has, its budget is not known.
+fn asks_rate(output: &Output) -> bool {
+    output.to.target.is_some_and(|target| target.asks_rate)
+}
+
+/// Checks the budget of an output whose controller has asked for its number of packets. Returns what is wrong, with the
+/// greatest number that fits and the baud rate that carries what it asks for.
+pub(super) fn afford_asked(plan: &Plan, output: &Output, speed: f64, peer: Peer) -> Option<String> {
+    let rate = peer.rate.filter(|_| asks_rate(output))?;
+    let budget = Budget::asked(plan, output, speed, peer);
+    let fits = |rate: Rate| Budget::asked(plan, output, speed, Peer { rate: Some(rate), ..peer }).fits();
+    let lower = (1..=UNIT_RATE).filter_map(|divisor| Rate::new(UNIT_RATE, divisor));
+    let lower = lower.filter(|lower| lower.as_hz() < rate.as_hz()).find(|lower| fits(*lower));
+    let lower = lower.map_or(String::new(), |lower| format!("ask for {lower} (EAHRS_RATE), "));
+    let baud = STANDARD_BAUDS.iter().find(|baud| bytes_per_second(**baud) >= budget.bytes_per_s);
+    let baud = baud.map_or("a faster link".into(), |baud| format!("a baud rate of {baud} at both ends"));
+    let what = || format!("the controller asks for {rate}: {}; {lower}or use {baud}", budget.arithmetic());
+    (!budget.fits()).then(what)
 }
 
 #[cfg(test)]

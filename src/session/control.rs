@@ -20,10 +20,11 @@ use super::shared::TICK;
 use super::side::Side;
 use super::talk::Talk;
 use super::watch::Watching;
-use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, step};
+use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, budget, step};
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
 use crate::motion::Truth;
+use crate::scene::Overload;
 use crate::time::SimTime;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -88,7 +89,10 @@ impl Control {
         }
         let Job { command, keep_stdout, .. } = &control.job;
         outside.program = Program::start(command, control.outputs[0].name(), *keep_stdout)?;
-        let here = control.wait(&mut outside).await;
+        let here = match control.wait(&mut outside).await {
+            Ok(true) => control.afford_asked(&mut outside).map(|()| true),
+            here => here,
+        };
         if !matches!(here, Ok(true)) {
             control.shared.stop.store(true, Ordering::Relaxed);
             drop(consumer);
@@ -115,7 +119,8 @@ impl Control {
             outputs.push(OpenOutput::open(output).await?);
         }
         let paced = job.speed.is_paced();
-        let sides = outputs.iter_mut().map(|it| Side::new(&it.output, it.link.sender(), paced)).collect();
+        let sides =
+            outputs.iter_mut().map(|it| Side::new(&it.output, it.link.sender(), paced, job.rest)).collect();
         let shared = Arc::new(Shared::before(job.rest));
         let lockstep = job.outputs.iter().any(step::in_lockstep);
         let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
@@ -202,7 +207,25 @@ impl Control {
         }
     }
 
-    /// Reports a controller that asks for higher rates than the scene has.
+    /// Rejects a controller that asks for more packets than its link carries, unless that is forced.
+    ///
+    /// # Errors
+    /// What does not fit, and what would.
+    fn afford_asked(&self, outside: &mut Outside<'_>) -> Result<(), SessionError> {
+        let Speed::Times(speed) = self.job.speed else { return Ok(()) };
+        let talk = self.talk.borrow();
+        for (output, side) in self.outputs.iter().map(|it| &it.output).zip(&talk.sides) {
+            let over = budget::afford_asked(&self.job.plan, output, speed, side.peer());
+            match over.filter(|_| output.overload != Overload::Stretch) {
+                None => {}
+                Some(over) if output.force => outside.notice(format!("{over}; the rest is lost")),
+                Some(over) => return Err(SessionError::TooSlow(over)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Reports a controller for higher rates than the scene has.
     fn compare_rates(&self, outside: &mut Outside<'_>) {
         let sensors = self.job.plan.sensors.iter();
         let Some(fastest) = sensors.max_by(|a, b| a.rate.as_hz().total_cmp(&b.rate.as_hz())) else { return };
@@ -279,7 +302,7 @@ impl Control {
     fn look_on(&mut self, outside: &mut Outside<'_>) {
         let unready = {
             let talk = self.talk.borrow();
-            talk.unready().map(|i| (self.outputs[i].name().to_string(), talk.sides[i].what_came()))
+            talk.unready().map(|i| (self.outputs[i].name().to_string(), talk.sides[i].why_not_ready()))
         };
         match self.hold.look(&self.shared, unready, self.job.wait) {
             Ok(true) => outside.tell(Event::Started),
@@ -388,7 +411,6 @@ impl Control {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Speed;
     use super::*;
     use crate::scene::{Output, Plan};
     use std::fs::OpenOptions;

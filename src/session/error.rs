@@ -41,6 +41,11 @@ pub enum SessionError {
         /// What it reported.
         came: String,
     },
+    /// A controller asks for more packets than its link carries.
+    #[error(
+        "{0}; or start in spite of it, and lose what does not fit: --force, or force = true in [[output]]"
+    )]
+    TooSlow(String),
     /// The command did not start.
     #[error("`{program}` could not be started: {source}")]
     Command {

@@ -54,6 +54,13 @@ impl Heard {
         self.speed != Speed::Max || self.lockstep || matches!(estimate.stamp, Stamp::Sample(_))
     }
 
+    /// How far an estimate at `now`, ns, is off the vehicle at rest before the scene, degrees; `None` once that is over.
+    pub(super) fn off_rest(&self, estimate: &Estimate, now: i64) -> Option<f64> {
+        let at_rest = self.scene_time(now).is_none();
+        let truth = || self.plan.trajectory.at(SimTime::ZERO).attitude;
+        at_rest.then(|| Off::between(truth(), estimate.attitude).total_deg)
+    }
+
     /// Places an estimate that arrived at `now` (ns on the run's clock) in scene time. `None` for an estimate from
     /// the rest before the scene.
     pub(super) fn take_in(&mut self, Estimate { stamp, attitude }: Estimate, now: i64) -> Option<Timed> {

@@ -58,8 +58,12 @@ impl Hold {
     pub(super) fn untaken(&mut self, shared: &Shared) -> Option<String> {
         let untaken = shared.untaken.get();
         let patience = SimTime(step::PATIENCE);
-        (std::mem::replace(&mut self.untaken, untaken) < untaken).then(|| {
-            format!("no answer to a packet of samples for {patience}: the stream goes on in real time until the next one")
-        })
+        let before = std::mem::replace(&mut self.untaken, untaken);
+        let what = format!("no answer to a packet of samples for {patience}");
+        match (before, untaken) {
+            (0, 1..) => Some(format!("{what}: the stream goes on in real time until the next one")),
+            (1, 2..) => Some(format!("{what} again: from now on this is counted, not told")),
+            _ => None,
+        }
     }
 }

@@ -8,7 +8,7 @@ use crate::link::Address;
 use crate::report::{AttitudeReport, Host, LinkReport, PacingReport, Report, SensorReport};
 use crate::scene::{Output, Plan, Target};
 use crate::score::Figures;
-use crate::time::SimTime;
+use crate::time::{NANOS, SimTime};
 use crate::wire::Protocol;
 use std::sync::Arc;
 use std::time::Duration;
@@ -51,7 +51,7 @@ impl Job {
     pub fn new(plan: Arc<Plan>, outputs: Vec<Output>) -> Job {
         Job {
             end: plan.duration,
-            rest: outputs.iter().filter_map(|output| Some(output.to.target?.rest)).max(),
+            rest: rest(&plan, &outputs),
             plan,
             outputs,
             ground: None,
@@ -92,6 +92,17 @@ impl Job {
             ..Report::new(&self.plan.name, self.plan.seed)
         }
     }
+}
+
+/// How long the vehicle rests at least for the most demanding target. Where it moves as soon as the scene begins, its
+/// estimator has no time to settle in the scene, and it rests longer.
+fn rest(plan: &Plan, outputs: &[Output]) -> Option<SimTime> {
+    const LONGER: SimTime = SimTime(5 * NANOS);
+    let rest = outputs.iter().filter_map(|output| Some(output.to.target?.rest)).max()?;
+    let start = plan.trajectory.at(SimTime::ZERO);
+    let pushed = start.force.v.length() - plan.trajectory.gravity().v.length();
+    let moves = start.rate.v.length() > 1e-3 || pushed.abs() > 0.05;
+    Some(if moves && rest > SimTime::ZERO { rest + LONGER } else { rest })
 }
 
 /// Receives bytes as they arrive.

@@ -3,6 +3,7 @@
 use super::answers::Answers;
 use super::lane::Lane;
 use super::replies::Way;
+use super::settling::Settling;
 use super::step::{Step, in_lockstep};
 use super::tally::Tally;
 use crate::link::Sender;
@@ -30,6 +31,10 @@ pub(super) struct Side {
     /// Whether a controller of its make answers while the scene is played.
     must_answer: bool,
     lockstep: bool,
+    /// Where the scene waits for its estimator.
+    settling: Option<Settling>,
+    /// The newest notice that its dialogue gave.
+    notice: Option<String>,
     /// Whether a silence means anything.
     timed: bool,
     way: Way,
@@ -38,8 +43,9 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// The other side of an output; `sender` is the way to its link. `paced` is whether wall time means anything.
-    pub(super) fn new(output: &Output, sender: Sender, paced: bool) -> Side {
+    /// The other side of an output; `sender` is the way to its link. `paced` is whether wall time means anything, `rest`
+    /// how long the vehicle rests at least before the scene.
+    pub(super) fn new(output: &Output, sender: Sender, paced: bool, rest: Option<SimTime>) -> Side {
         Side {
             dialogue: output.to.protocol.dialogue(output.wire.controller),
             estimates: Vec::new(),
@@ -49,6 +55,10 @@ impl Side {
             to: output.to.to_string(),
             must_answer: output.wire.controller.is_some_and(Controller::answers),
             lockstep: in_lockstep(output),
+            settling: rest
+                .filter(|_| output.wire.controller.is_some_and(Controller::tells_rest))
+                .map(Settling::new),
+            notice: None,
             timed: paced || in_lockstep(output),
             protocol: output.to.protocol.name(),
             way: Way::Link(sender, 0),
@@ -103,7 +113,28 @@ impl Side {
 
     /// The stage of the conversation.
     pub(super) fn stage(&self) -> Stage {
-        self.dialogue.as_ref().map_or(Stage::Ready, |dialogue| dialogue.stage())
+        let stage = self.dialogue.as_ref().map_or(Stage::Ready, |dialogue| dialogue.stage());
+        match &self.settling {
+            Some(settling) if !settling.is_settled() => stage.min(Stage::Still),
+            _ => stage,
+        }
+    }
+
+    /// Takes an estimate of the vehicle at rest that is `off` by so many degrees. Returns a notice.
+    pub(super) fn rests(&mut self, off: f64, now: i64) -> Option<String> {
+        self.settling.as_mut()?.take(off, now)
+    }
+
+    /// Keeps a notice of its dialogue: it may be why it never becomes ready.
+    pub(super) fn keep(&mut self, notice: &str) {
+        self.notice = Some(notice.into());
+    }
+
+    /// Why it is not ready, as far as that is known.
+    pub(super) fn why_not_ready(&self) -> String {
+        let settling = self.settling.as_ref().and_then(Settling::why_not);
+        let causes: Vec<_> = settling.into_iter().chain(self.notice.clone()).collect();
+        if causes.is_empty() { self.what_came() } else { causes.join("; ") }
     }
 
     /// What is known of the other side.

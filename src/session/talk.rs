@@ -72,6 +72,9 @@ impl Talk {
         self.notices.extend(answer.map(|notice| format!("{}: {notice}", side.to)));
         match said {
             Said::Estimate(estimate) if self.heard.is_timed(&estimate) => {
+                if let Some(off) = self.heard.off_rest(&estimate, now) {
+                    self.notices.extend(side.rests(off, now).map(|how| format!("{}: {how}", side.to)));
+                }
                 side.estimates.extend(self.heard.take_in(estimate, now));
             }
             Said::Estimate(_) => {
@@ -86,7 +89,10 @@ impl Talk {
                     pacing.unpark();
                 }
             }
-            Said::Notice(text) => self.notices.push(text),
+            Said::Notice(text) => {
+                side.keep(&text);
+                self.notices.push(text);
+            }
             Said::Restart(text) => {
                 side.answers.restarts += 1;
                 self.notices.push(text);

@@ -15,10 +15,10 @@ mod reader;
 pub use extra::{Extra, Extras};
 
 use super::row::{Row, Shared};
-use super::{Controller, Encoder, EverySecond, Newest, Now, Packet, Setup};
+use super::{Controller, Encoder, EverySecond, Newest, Now, Options, Packet, Setup};
 use crate::earth::pressure_altitude;
 use crate::sensor::{ByKind, Claims, Kinds, SensorKind, TEMPERATURE};
-use crate::time::SimTime;
+use crate::time::{Rate, SimTime};
 use extra::Sender;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, heartbeat, hil_sensor, system_time};
 
@@ -32,7 +32,21 @@ pub(super) static ROW: Row = Row {
         false => Box::new(reader::Reader::default()),
     },
     dialogue: |controller| Some(Box::new(dialogue::Mavlink::new(controller))),
-    shared: |first| Some(Shared::at_ticks("HIL_SENSOR", KINDS, first)),
+    shared: |options, first| {
+        let every = every(options, first.rate);
+        Some(match first.rate.times(1, every) {
+            Some(rate) if every > 1 => Shared {
+                kinds: KINDS,
+                rate,
+                what: format!(
+                    "HIL_SENSOR at every {every}th {} tick ({rate}), as PX4 keeps up with in lockstep",
+                    first.kind
+                ),
+                fits: Some(rate),
+            },
+            _ => Shared::at_ticks("HIL_SENSOR", KINDS, first),
+        })
+    },
     keys: &["version", "messages", "thin"],
     check: |options, _| {
         let px4 = matches!(options.controller, Some(Controller::Px4 | Controller::Px4Sitl));
@@ -49,6 +63,18 @@ pub(super) static ROW: Row = Row {
     // Magic, length, flags, sequence, sender and message: without them the length of the packet is lost.
     inside: |len| (10.min(len)..len, None),
 };
+
+/// PX4 in lockstep stops answering at 500 samples a second with its default IMU_INTEG_RATE; at 250 it keeps up
+/// (measured).
+const SITL_FASTEST: f64 = 250.0;
+
+/// Of how many ticks of the first sensor one sends HIL_SENSOR.
+fn every(options: &Options, rate: Rate) -> u64 {
+    match options.controller {
+        Some(Controller::Px4Sitl) => libm::ceil(rate.as_hz() / SITL_FASTEST).max(1.0) as u64,
+        _ => 1,
+    }
+}
 
 /// The simulator's own ids: the vehicle's system if unknown, and a separate component.
 pub(super) const SYSTEM: u8 = 1;
@@ -94,6 +120,9 @@ pub(super) struct Mavlink {
     counts: [f64; 3],
     /// The sensor whose ticks send messages: the gyro, or without one the first sensor.
     carrier: Option<SensorKind>,
+    /// Of how many of its ticks one sends a message, and how many are left until then.
+    every: u64,
+    left: u64,
     /// The accuracy that the scene's receiver claims for its fixes.
     claims: Option<Claims>,
     unix_us_at_start: Option<u64>,
@@ -112,6 +141,8 @@ impl Mavlink {
             counts: super::mpu::counts(setup.sensors),
             newest: Newest::new(&setup.options),
             carrier: setup.sensors.iter().map(|sensor| sensor.kind).find(|kind| KINDS.contains(*kind)),
+            every: setup.sensors.first().map_or(1, |first| every(&setup.options, first.rate)),
+            left: 0,
             claims: setup
                 .sensors
                 .iter()
@@ -154,6 +185,13 @@ impl Mavlink {
             let bytes = self.bytes(&message, &mut buffer);
             out.push(Packet::new(t, Kinds::NONE, bytes));
         }
+    }
+
+    /// Whether this tick of the carrier sends a message.
+    fn is_turn(&mut self) -> bool {
+        let turn = self.left == 0;
+        self.left = if turn { self.every - 1 } else { self.left - 1 };
+        turn
     }
 
     fn readings(&self) -> Readings<'_> {
@@ -225,7 +263,7 @@ impl Encoder for Mavlink {
             self.every_second(second, out);
         }
         self.newest.take_in(readings);
-        if readings.iter().any(|reading| Some(reading.kind) == self.carrier) {
+        if readings.iter().any(|reading| Some(reading.kind) == self.carrier) && self.is_turn() {
             let message = self.hil_sensor(t);
             let mut buffer = [0; mavlink::MAX_LEN];
             let bytes = self.bytes(&message, &mut buffer);

@@ -23,7 +23,7 @@ pub(super) static ROW: Row = Row {
     encoder: |setup| Box::new(Mip::new(setup)),
     reader: |_| Box::new(reader::Reader::default()),
     dialogue: |_| None,
-    shared: |first| Some(Shared::at_ticks("a packet", CARRIED, first)),
+    shared: |_, first| Some(Shared::at_ticks("a packet", CARRIED, first)),
     keys: &["thin"],
     check: any,
     greeting: |_| vec![0],

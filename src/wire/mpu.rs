@@ -22,7 +22,7 @@ pub(super) static ROW: Row = Row {
     encoder: |setup| Box::new(Mpu::new(setup)),
     reader: |assumed| Box::new(reader::Reader::new(assumed.mounts)),
     dialogue: |_| Some(Box::new(dialogue::Answers::new())),
-    shared: |_| None,
+    shared: |_, _| None,
     keys: &["layout"],
     check: |options, sensors| {
         let has = |kind| sensors.iter().any(|sensor| sensor.kind == kind);

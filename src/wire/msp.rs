@@ -24,7 +24,7 @@ pub(super) static ROW: Row = Row {
     encoder: |setup| Box::new(Msp::new(setup)),
     reader: |_| Box::new(reader::Reader::default()),
     dialogue: |controller| Some(Box::new(dialogue::Inav::new(controller))),
-    shared: |first| {
+    shared: |_, first| {
         let capped = first.rate.as_hz() > FASTEST.as_hz();
         Some(match capped {
             true => Shared {

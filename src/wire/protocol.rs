@@ -141,7 +141,7 @@ pub fn warnings(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -
 
 /// The warnings about sensors faster than the packets that carry them.
 fn replaced(protocol: Protocol, options: &Options, sensors: &[&SensorPlan]) -> Vec<String> {
-    let shared = sensors.first().and_then(|first| (protocol.row().shared)(first));
+    let shared = sensors.first().and_then(|first| (protocol.row().shared)(options, first));
     let Some(shared) = shared else { return Vec::new() };
     let faster = sensors.iter().filter(|sensor| shared.kinds.contains(sensor.kind));
     let faster = faster.filter(|sensor| sensor.rate.as_hz() > shared.rate.as_hz());

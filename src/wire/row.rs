@@ -21,8 +21,9 @@ pub(super) struct Row {
     pub reader: fn(&Assumed) -> Box<dyn Reader>,
     /// The dialogue for a controller; `None` where the other side says nothing.
     pub dialogue: fn(Option<Controller>) -> Option<Box<dyn Dialogue>>,
-    /// The packets that carry several sensors, in a scene whose first carried sensor is this one.
-    pub shared: fn(&SensorPlan) -> Option<Shared>,
+    /// The packets that carry several sensors, with these options in a scene whose first carried sensor is
+    /// this one.
+    pub shared: fn(&Options, &SensorPlan) -> Option<Shared>,
     /// The keys of `[[output]]` that are for it alone.
     pub keys: &'static [&'static str],
     /// Checks that it works with these options.

@@ -38,7 +38,7 @@ const fn lines(
         encoder,
         reader,
         dialogue: |_| None,
-        shared: |_| None,
+        shared: |_, _| None,
         keys: &[],
         check: any,
         greeting: |_| b"\n".to_vec(),

@@ -26,7 +26,7 @@ pub(super) static ROW: Row = Row {
     encoder: |setup| Box::new(Vectornav::new(setup)),
     reader: |_| Box::new(reader::Reader::default()),
     dialogue: |controller| Some(Box::new(dialogue::Unit::new(controller))),
-    shared: |first| Some(Shared::at_ticks("a packet", CARRIED, first)),
+    shared: |_, first| Some(Shared::at_ticks("a packet", CARRIED, first)),
     keys: &["thin"],
     check: any,
     greeting: |_| b"\n".to_vec(),
