@@ -6,8 +6,7 @@ use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::link::Address;
 use crate::report::Limit;
-use crate::scene::{Destination, Output, OutputFault, Plan, Target, builtin};
-use crate::sensor::SensorPlan;
+use crate::scene::{Destination, Output, OutputFault, Plan};
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
@@ -125,39 +124,27 @@ fn job(arguments: &Arguments, plan: Plan) -> (Job, bool) {
     (job, demonstration)
 }
 
-/// The scene that is asked for, or the first target's, or the demonstration's.
+/// The requested scene, or the first target's, or the demonstration's.
 fn plan(arguments: &Arguments) -> Result<Plan, Refusal> {
     let target = arguments.to.iter().find_map(|output| output.to.target);
-    let (scene, settings) = match (&arguments.scene, target, arguments.to.first()) {
-        (Some(scene), ..) => (scene.as_str(), &[][..]),
-        (None, Some(target), _) => (target.scene, target.settings),
+    let scene = match (&arguments.scene, target, arguments.to.first()) {
+        (scene, Some(target), _) => {
+            let (plan, set) = target.load(scene.as_deref(), &arguments.set)?;
+            if scene.is_some() && !set.is_empty() {
+                tell(&format!("notice: {} gets {} (--set overrides it)", target.name, set.join(", ")));
+            }
+            return Ok(plan);
+        }
+        (Some(scene), ..) => scene,
         (None, None, Some(output)) => {
             return Err(Refusal(format!(
                 "--to {} needs a scene: ratetable run SCENE --to …; `ratetable list scenes` shows the built-in ones",
                 output.to
             )));
         }
-        (None, None, None) => (DEMO_SCENE, &[][..]),
+        (None, None, None) => DEMO_SCENE,
     };
-    let settings = settings.iter().map(|setting| setting.to_string());
-    let settings: Vec<_> = settings.chain(arguments.set.iter().cloned()).collect();
-    let plan = Plan::load(scene, &settings)?;
-    let Some(target) = target.filter(|_| builtin::text(scene).is_some()) else { return Ok(plan) };
-    let needs: Vec<_> = needs(target, &plan).map(String::from).collect();
-    if arguments.scene.is_none() || needs.is_empty() {
-        return Ok(plan);
-    }
-    tell(&format!("notice: {} gets {} (--set overrides it)", target.name, needs.join(", ")));
-    Ok(Plan::load(scene, &[needs, settings].concat())?)
-}
-
-/// What a target needs a built-in scene to be set to: the rates of those sensors that are faster than it takes.
-fn needs<'a>(target: &'a Target, plan: &'a Plan) -> impl Iterator<Item = &'static str> {
-    let most = target.most_hz.map_or(f64::INFINITY, f64::from);
-    let is_faster = move |sensor: &SensorPlan| sensor.rate.as_hz() > most;
-    let faster: Vec<_> = plan.sensors.iter().filter(|it| is_faster(it)).map(|it| it.kind.name()).collect();
-    let settings = target.settings.iter().copied();
-    settings.filter(move |setting| faster.iter().any(|name| setting.starts_with(&format!("{name}."))))
+    Ok(Plan::load(scene, &arguments.set)?)
 }
 
 /// A ground station's address, and the output that it listens in on.

@@ -1,5 +1,6 @@
 //! Targets: a protocol plus what one flight controller needs to be fed well.
 
+use super::{Plan, SceneError, builtin};
 use crate::time::{NANOS, SimTime};
 use crate::wire::{Controller, Protocol};
 
@@ -28,6 +29,8 @@ pub struct Target {
     pub scene: &'static str,
     /// What that scene is set to, as by `--set`.
     pub settings: &'static [&'static str],
+    /// The sensors that its firmware wants, as set where a built-in scene has none.
+    pub wants: &'static [&'static str],
     /// What it is asked for, or sends by itself.
     pub asks: &'static str,
 }
@@ -46,6 +49,8 @@ pub static TARGETS: [Target; 5] = [
         asks_rate: false,
         scene: "level-then-turn",
         settings: &[],
+        // "Preflight Fail: barometer 0 missing" without one (measured).
+        wants: &["baro.rate=50 Hz"],
         asks: "ATTITUDE, ATTITUDE_QUATERNION, and the parameters that decide whether it accepts them",
     },
     Target {
@@ -60,6 +65,8 @@ pub static TARGETS: [Target; 5] = [
         asks_rate: false,
         scene: "level-then-turn",
         settings: &[],
+        // "Preflight Fail: barometer 0 missing" without one (measured).
+        wants: &["baro.rate=50 Hz"],
         asks: "HIL_ACTUATOR_CONTROLS, one for each HIL_SENSOR",
     },
     Target {
@@ -76,6 +83,7 @@ pub static TARGETS: [Target; 5] = [
         scene: "level-then-turn",
         // As many as its default baud rate carries; it asks for its own number of packets.
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
+        wants: &[],
         asks: "nothing: it configures the output at the rate in EAHRS_RATE",
     },
     Target {
@@ -90,6 +98,7 @@ pub static TARGETS: [Target; 5] = [
         asks_rate: false,
         scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
+        wants: &[],
         asks: "nothing: this unit is only listened to",
     },
     Target {
@@ -104,6 +113,7 @@ pub static TARGETS: [Target; 5] = [
         asks_rate: false,
         scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
+        wants: &[],
         asks: "its variant and MSP_ATTITUDE until it answers; then each simulator message is answered with its attitude",
     },
 ];
@@ -112,6 +122,32 @@ impl Target {
     /// The target of that name.
     pub fn from_name(name: &str) -> Option<&'static Target> {
         TARGETS.iter().find(|target| target.name == name)
+    }
+
+    /// Loads a scene for this target, or its own, with `--set` overrides. A built-in scene gets what the controller needs:
+    /// a rate that it takes, for each sensor that is faster, and the sensors that its firmware wants. Returns these
+    /// settings too.
+    ///
+    /// # Errors
+    /// No such scene, or every mistake in it.
+    pub fn load(
+        &self,
+        scene: Option<&str>,
+        sets: &[String],
+    ) -> Result<(Plan, Vec<&'static str>), SceneError> {
+        let name = scene.unwrap_or(self.scene);
+        let plan = Plan::load(name, sets)?;
+        if builtin::text(name).is_none() {
+            return Ok((plan, Vec::new()));
+        }
+        let of = |setting: &str| plan.sensors.iter().find(|it| setting.starts_with(&format!("{}.", it.kind)));
+        let most = self.most_hz.map_or(f64::INFINITY, f64::from);
+        let is_faster = |setting: &&&str| of(setting).is_some_and(|sensor| sensor.rate.as_hz() > most);
+        let rates = self.settings.iter().filter(|setting| scene.is_none() || is_faster(setting));
+        let absent = self.wants.iter().filter(|setting| of(setting).is_none());
+        let set: Vec<_> = rates.chain(absent).copied().collect();
+        let all: Vec<_> = set.iter().map(|setting| setting.to_string()).chain(sets.iter().cloned()).collect();
+        Ok((Plan::load(name, &all)?, set))
     }
 
     /// What it sets, a line each.
@@ -125,9 +161,44 @@ impl Target {
             rest => format!("holds still for {} s and until its estimator is ready", rest.0 / NANOS),
         });
         let set = |setting: &&str| format!(" --set '{setting}'");
-        let settings: String = self.settings.iter().map(set).collect();
+        let settings: String = self.settings.iter().chain(self.wants).map(set).collect();
         lines.push(format!("scene {}{settings} by default", self.scene));
         lines.push(format!("asked for {}", self.asks));
         lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensor::SensorKind;
+
+    fn rates(target: &str, scene: Option<&str>, sets: &[&str]) -> Vec<(SensorKind, f64)> {
+        let target = Target::from_name(target).unwrap();
+        let sets: Vec<_> = sets.iter().map(|set| set.to_string()).collect();
+        let (plan, _) = target.load(scene, &sets).unwrap_or_else(|error| panic!("{error}"));
+        plan.sensors.iter().map(|sensor| (sensor.kind, sensor.rate.as_hz())).collect()
+    }
+
+    #[test]
+    fn a_built_in_scene_gets_what_the_controller_needs_and_a_file_stays_as_it_is() {
+        use SensorKind::{Accel, Baro, Gyro, Mag};
+        let inav = [(Gyro, 100.0), (Accel, 100.0), (Mag, 100.0)];
+        assert_eq!(rates("inav", None, &[]), inav);
+        assert_eq!(rates("inav", Some("level-then-turn"), &[]), inav, "by its name too");
+        let own = rates("inav", Some("level-then-turn"), &["gyro.rate=50 Hz", "accel.rate=400 Hz"]);
+        assert_eq!(own, [(Gyro, 50.0), (Accel, 400.0), (Mag, 100.0)], "--set has the last word");
+        // A faster magnetometer stays: nothing says what rate it should have.
+        let px4 = rates("px4-sitl", Some("still"), &[]);
+        assert_eq!(px4.last(), Some(&(Baro, 50.0)), "PX4 wants a barometer");
+        assert_eq!(px4[0], rates("ardupilot", Some("still"), &[])[0], "no other rate changes");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\n").unwrap();
+        for target in ["inav", "px4"] {
+            assert_eq!(rates(target, path.to_str(), &[]), [(Gyro, 1000.0)]);
+        }
+        let said = Target::from_name("inav").unwrap().load(Some("still"), &[]).unwrap().1;
+        assert_eq!(said, ["gyro.rate=100 Hz", "accel.rate=100 Hz"]);
     }
 }

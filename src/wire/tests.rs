@@ -366,6 +366,40 @@ fn mavlink_carries_the_newest_of_each_sensor_with_a_bit_for_each_that_ticked() {
 }
 
 #[test]
+fn px4_in_lockstep_gets_no_more_packets_than_it_keeps_up_with_and_their_means() {
+    for (hz, every) in [(100, 1), (250, 1), (333, 2), (500, 2), (1000, 4)] {
+        let plan = plan(&format!("duration = \"2 s\"\n[gyro]\nrate = \"{hz} Hz\"\n"));
+        for (controller, every) in [(Controller::Px4Sitl, every), (Controller::Px4, 1)] {
+            let options = Options { controller: Some(controller), ..Options::default() };
+            let mut encoder = encoder(Protocol::Mavlink, &Setup { options, ..setup(&plan, None) });
+            let (mut packets, mut k) = (Vec::new(), 0.0);
+            let played: Result<(), ()> = Player::new(&plan, plan.duration, 64).play(|moment| {
+                let readings: Vec<_> =
+                    moment.readings.iter().map(|it| it.with_body(Vector::new(k, 0.0, 0.0))).collect();
+                encoder.encode(&Now { t: moment.t, truth: moment.truth, readings: &readings }, &mut packets);
+                k += 1.0;
+                Ok(())
+            });
+            played.unwrap();
+            let sensed: Vec<_> = flown(&packets)
+                .into_iter()
+                .filter_map(|(_, message)| match message {
+                    Message::HilSensor(seen) => Some(f64::from(seen.gyro[0])),
+                    _ => None,
+                })
+                .collect();
+            assert_eq!(sensed.len(), (2 * hz as usize).div_ceil(every), "{hz} Hz");
+            // The first goes out at once; each after it is the mean of `every` samples.
+            let mean = |i: usize| if i == 0 { 0.0 } else { (i * every) as f64 - (every - 1) as f64 / 2.0 };
+            assert!(
+                sensed.iter().enumerate().all(|(i, x)| (x - mean(i)).abs() < 1e-3),
+                "{hz} Hz: {sensed:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn mavlink_sends_its_heartbeat_and_the_scenes_clock_once_a_second() {
     for (earth, start) in [("", None), ("[earth]\ndate = \"2026-11-22\"\n", Some(1_795_305_600_000_000))] {
         let scene = format!("duration = \"3.5 s\"\n{earth}[gyro]\nrate = \"10 Hz\"\n");

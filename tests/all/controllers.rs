@@ -299,7 +299,7 @@ fn inav_is_asked_until_it_answers_held_still_and_left_at_rest_after_an_interrupt
                 let len = msp::encode(&answer, &mut out).unwrap();
                 let _ = port.write_all(&out[..len]);
             }
-            if interrupted && fed > 220 && !std::mem::replace(&mut stopped, true) {
+            if interrupted && fed > 450 && !std::mem::replace(&mut stopped, true) {
                 let pid = rustix::process::Pid::from_child(&run.child);
                 rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
             }
