@@ -255,6 +255,9 @@ pub struct LinkReport {
     /// Packets that each kind of fault acted on, of those its output has; not among `dropped`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub faults: BTreeMap<&'static str, u64>,
+    /// The rates that the controller asked for while it was sent others, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub asked: Vec<AskedRate>,
     /// Damaged answers.
     pub crc_errors: u64,
     /// Packets the other side missed by their sequence numbers, where it is known.
@@ -277,6 +280,15 @@ impl LinkReport {
             ..LinkReport::default()
         }
     }
+}
+
+/// A rate that a controller asked for while it was sent another: after a restart, say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct AskedRate {
+    /// Stream time from which packets were made at it, the rest before the scene included, s.
+    pub at_s: f64,
+    /// Packets a second.
+    pub hz: f64,
 }
 
 /// A port that was unplugged while packets were sent.

@@ -29,6 +29,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod beat;
 pub mod dialogue;
 mod fault;
 mod faults;
@@ -83,6 +84,8 @@ pub enum Controller {
     Px4,
     /// PX4 as a program, in lockstep.
     Px4Sitl,
+    /// PX4 with a VectorNav unit on a UART, whose samples its own estimator runs on.
+    Px4Vectornav,
     /// ArduPilot with an external AHRS.
     Ardupilot,
     /// INAV with its HITL simulator message.
@@ -140,6 +143,14 @@ pub trait Encoder: Send {
     fn waiting(&self) -> ByKind<u64> {
         ByKind::default()
     }
+
+    /// Whether the other side may ask for other packets while it is sent these: then they are not made far ahead.
+    fn follows(&self) -> bool {
+        false
+    }
+
+    /// From `now` on makes the packets that the other side asks for.
+    fn follow(&mut self, _peer: &Peer, _now: SimTime) {}
 }
 
 /// A vehicle that stands level, facing north, where nothing else is known of the scene.

@@ -41,6 +41,16 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             gaps.samples
         );
     }
+    for (link, asked) in
+        report.links.iter().flat_map(|link| link.asked.iter().map(move |asked| (link, asked)))
+    {
+        text += &format!(
+            "the controller on {} asked for {} Hz: sent so from {} s of the stream on\n",
+            link.name,
+            number(asked.hz),
+            number(asked.at_s)
+        );
+    }
     if let Some(attitude) = &report.attitude {
         text += &known(attitude);
     }

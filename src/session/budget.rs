@@ -43,7 +43,7 @@ impl Budget {
             (bytes * speed, packets * speed)
         };
         let (bytes_per_s, packets_per_s) = load(&plan.sensors, output.to.protocol, output.wire);
-        let capacity = output.to.address.baud().map(bytes_per_second);
+        let capacity = output.to.baud().map(bytes_per_second);
         let mut budget =
             Budget { to: output.to.clone(), packets_per_s, bytes_per_s, capacity, ways_out: Vec::new() };
         if let Some(capacity) = capacity.filter(|_| !budget.fits()) {
@@ -72,7 +72,7 @@ impl Budget {
     pub fn arithmetic(&self) -> String {
         let (packets, bytes) = (number(self.packets_per_s), number(self.bytes_per_s));
         let needs = format!("{} needs {bytes} bytes/s ({packets} packets/s)", self.to);
-        match (self.to.address.baud(), self.capacity, self.share()) {
+        match (self.to.baud(), self.capacity, self.share()) {
             (Some(baud), Some(capacity), Some(share)) => format!(
                 "{needs}, and {baud} baud carries {} (8N1: {baud}/10), so that is {:.0} % of it",
                 number(capacity),
@@ -104,7 +104,7 @@ pub fn afford(
     warn: &mut dyn FnMut(String),
 ) -> Result<(), String> {
     let mut refused = Vec::new();
-    for output in outputs.iter().filter(|output| output.to.address.baud().is_some()) {
+    for output in outputs.iter().filter(|output| output.to.baud().is_some()) {
         let budget = Budget::of(plan, output, speed);
         let stretched = output.overload == Overload::Stretch;
         match budget.fits() {

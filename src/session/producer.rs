@@ -12,7 +12,8 @@ use std::time::Duration;
 
 /// How long to wait when the ring is full: far less than it holds.
 const FULL: Duration = Duration::from_micros(200);
-/// How far ahead of what is sent the rest is made, ns of stream time: so soon the scene can begin once it may.
+/// How far ahead of what is sent the rest is made, ns of stream time: so soon the scene can begin once it may. Where a
+/// controller may ask for another rate the scene is made no further ahead either.
 const LEAD: i64 = 200_000_000;
 /// Between two looks at how far what is sent has come: far less than the lead.
 const AHEAD: Duration = Duration::from_millis(1);
@@ -34,7 +35,8 @@ struct Stopped;
 
 /// Plays the task into the ring; gives back the feeds, which know what was made and how to take leave.
 pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, shared: &Shared) -> Vec<Feed> {
-    let mut maker = Maker { feeds, items: Vec::new(), start: SimTime::ZERO, ring, shared };
+    let follows = feeds.iter().any(Feed::follows);
+    let mut maker = Maker { feeds, follows, items: Vec::new(), start: SimTime::ZERO, ring, shared };
     // Stopping early is no failure: what was made is counted either way.
     let _ = maker.play(task);
     maker.end();
@@ -45,6 +47,8 @@ pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, sh
 struct Maker<'a> {
     /// One an output.
     feeds: Vec<Feed>,
+    /// Whether one makes what is asked for meanwhile, so that the scene too is made little ahead.
+    follows: bool,
     /// What was made last.
     items: Vec<Item>,
     /// Stream time at which what is played began.
@@ -106,6 +110,9 @@ impl Maker<'_> {
             return Err(Stopped);
         }
         let t = self.start + t;
+        if self.follows {
+            self.wait_for_lead(t)?;
+        }
         let moment = Moment { t, truth: &Truth { t, ..*truth }, readings };
         let sent = self.shared.sent();
         for (lane, feed) in self.feeds.iter_mut().enumerate() {

@@ -3,12 +3,13 @@
 use super::lane::Lane;
 use super::replies::Way;
 use super::step::{Step, in_lockstep};
-use crate::link::Sender;
+use crate::link::{Baud, Sender};
 use crate::scene::Output;
 use crate::score::Timed;
 use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender as News, channel};
 
 /// One of them.
 pub(super) struct Side {
@@ -18,6 +19,12 @@ pub(super) struct Side {
     /// Bytes that came, and messages among them.
     pub bytes: u64,
     pub messages: u64,
+    /// The speed of its port, where it has one.
+    pub baud: Option<Baud>,
+    /// The speed that it asked for, until what was said before has gone out.
+    next_baud: Option<u32>,
+    /// To whom it is told what is known of it, once that changes.
+    news: Option<(Peer, News<Peer>)>,
     protocol: &'static str,
     way: Way,
     /// In lockstep: packets that it has taken.
@@ -32,6 +39,9 @@ impl Side {
             estimates: Vec::new(),
             bytes: 0,
             messages: 0,
+            baud: None,
+            next_baud: None,
+            news: None,
             protocol: output.to.protocol.name(),
             way: Way::Link(sender, 0),
             took: Arc::default(),
@@ -46,6 +56,42 @@ impl Side {
     /// It has taken another packet.
     pub(super) fn took(&mut self) {
         self.took.fetch_add(1, Ordering::Release);
+    }
+
+    /// It goes on at another speed.
+    pub(super) fn change_speed(&mut self, baud: u32) {
+        self.next_baud = self.baud.as_ref().map(|_| baud);
+    }
+
+    /// Follows it to the speed that it asked for, as soon as what it was answered is written; what the user should know.
+    pub(super) fn follow_speed(&mut self) -> Option<String> {
+        let baud = self.next_baud.take_if(|_| self.way.is_empty())?;
+        let port = self.baud.as_ref().filter(|port| port.now() != baud)?;
+        Some(match port.set(baud) {
+            Ok(()) => format!("the flight controller sets {baud} baud: the port goes on at that"),
+            Err(error) => format!(
+                "the flight controller sets {baud} baud, and the port does not follow ({error}): it stays at {}",
+                port.now()
+            ),
+        })
+    }
+
+    /// What is known of it now; what changes is told to whoever has the other end.
+    pub(super) fn tell(&mut self) -> (Peer, Receiver<Peer>) {
+        let (news, other_end) = channel();
+        let peer = self.peer();
+        self.news = Some((peer, news));
+        (peer, other_end)
+    }
+
+    /// Tells what has changed.
+    pub(super) fn pass_on(&mut self) {
+        let peer = self.peer();
+        if let Some((told, news)) = self.news.as_mut().filter(|(told, _)| *told != peer) {
+            *told = peer;
+            // Who makes no packets any more need not know.
+            let _ = news.send(peer);
+        }
     }
 
     /// Counts the packets that it has taken.

@@ -56,7 +56,10 @@ impl Talk {
     fn converse(&mut self, link: usize, with: impl FnOnce(&mut dyn Dialogue, &mut Talk)) {
         if let Some(mut dialogue) = self.sides[link].dialogue.take() {
             with(&mut *dialogue, self);
-            self.sides[link].dialogue = Some(dialogue);
+            let side = &mut self.sides[link];
+            side.dialogue = Some(dialogue);
+            side.pass_on();
+            self.notices.extend(side.follow_speed());
         }
     }
 
@@ -78,6 +81,7 @@ impl Talk {
                     pacing.unpark();
                 }
             }
+            Said::Speed(baud) => side.change_speed(baud),
             Said::Notice(text) => self.notices.push(text),
             Said::Pass(frame) => {
                 if let Some((sender, _)) = self.ground.as_mut().filter(|(_, with)| *with == link) {

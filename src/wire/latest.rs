@@ -4,6 +4,7 @@
 //! A packet is due on time whether or not a sample is: one that came later waits for the next packet, and a sensor
 //! without a new one is told again as it was, as a unit that holds its output registers does.
 
+use super::beat::Beat;
 use super::newest::Told;
 use super::{Newest, Packet, Setup};
 use crate::earth::SEA_LEVEL_PRESSURE;
@@ -20,8 +21,9 @@ pub(super) struct Latest {
     newest: Newest,
     /// Whose first sample begins the stream: the gyro, or without one the first sensor.
     carrier: Option<SensorKind>,
-    beat: Ticks,
-    next: u64,
+    /// What the packets carry.
+    pub kinds: Kinds,
+    beat: Beat,
 }
 
 impl Latest {
@@ -34,7 +36,8 @@ impl Latest {
         });
         let wanted = rate(own);
         let beat = Ticks { rate: if wanted == own { clock } else { wanted }, phase };
-        Latest { newest: Newest::default(), carrier: carrier.map(|sensor| sensor.kind), beat, next: 0 }
+        let carrier = carrier.map(|sensor| sensor.kind);
+        Latest { newest: Newest::default(), carrier, kinds: CARRIED, beat: Beat::new(beat) }
     }
 
     /// Takes in the readings due at `t` and appends the packets due up to then, of the bytes that `write` makes of a
@@ -50,15 +53,15 @@ impl Latest {
         let mut send = |latest: &mut Latest, due| {
             if latest.has_begun() {
                 let len = write(due, &latest.newest.told, buffer);
-                out.push(latest.newest.packet(due, CARRIED, &buffer[..len]));
+                out.push(latest.packet(due, latest.kinds, &buffer[..len]));
             }
-            latest.next += 1;
+            latest.beat.step();
         };
-        while let Some(due) = Some(self.due()).filter(|&due| due < t) {
+        while let Some(due) = Some(self.beat.due()).filter(|&due| due < t) {
             send(self, due);
         }
         self.newest.take_in(readings);
-        if self.due() == t {
+        if self.beat.due() == t {
             send(self, t);
         }
     }
@@ -73,12 +76,18 @@ impl Latest {
         self.newest.waiting()
     }
 
-    /// When the next packet is due.
-    fn due(&self) -> SimTime {
-        self.beat.phase + self.beat.rate.tick(self.next)
+    /// Packets at another rate from now on.
+    pub(super) fn change(&mut self, rate: Rate, now: SimTime) {
+        self.beat.change(rate, now);
     }
 
-    fn has_begun(&self) -> bool {
+    /// A packet of these bytes that carries what is new of these kinds.
+    pub(super) fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
+        self.newest.packet(due, kinds, bytes)
+    }
+
+    /// Whether the first sample is there, before which there are no packets.
+    pub(super) fn has_begun(&self) -> bool {
         self.carrier.is_some_and(|kind| self.newest.told.has(kind))
     }
 }

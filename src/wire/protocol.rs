@@ -1,6 +1,6 @@
 //! The protocols as a table: to add one, its folder, its variant, and its line in `ROWS`.
 
-use super::dialogue::Dialogue;
+use super::dialogue::{Dialogue, Peer};
 use super::row::Row;
 use super::{Controller, Encoder, Now, Options, Packet, Setup, mavlink, mip, mpu, msp, text, vectornav};
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
@@ -16,7 +16,7 @@ pub enum Protocol {
     Mavlink,
     /// INAV's simulator message in MSPv2 frames.
     Msp,
-    /// Binary outputs of a VN-100, for ArduPilot.
+    /// Binary outputs of a VN-100, for ArduPilot and PX4.
     Vectornav,
     /// MicroStrain inertial packets, for ArduPilot.
     Mip,
@@ -108,6 +108,14 @@ impl Encoder for Picky {
 
     fn waiting(&self) -> ByKind<u64> {
         self.encoder.waiting()
+    }
+
+    fn follows(&self) -> bool {
+        self.encoder.follows()
+    }
+
+    fn follow(&mut self, peer: &Peer, now: SimTime) {
+        self.encoder.follow(peer, now);
     }
 }
 

@@ -56,6 +56,7 @@ impl Word {
             Said::Took => Word::Took,
             Said::Notice(notice) => Word::Notice(notice.clone()),
             Said::Pass(bytes) => Word::Pass(bytes.to_vec()),
+            Said::Speed(baud) => panic!("nothing over MAVLink sets {baud} baud"),
         }
     }
 }
