@@ -153,6 +153,95 @@ fn msp_leaves_the_magnetometers_own_errors_on_its_own_axes() {
     }
 }
 
+/// Simulator messages with a fix, each with the packet's samples of the receiver.
+fn fixes(scene: &str) -> Vec<(simulator::Repr, bool, u64)> {
+    let (packets, _) = play(&plan(scene), Protocol::Msp, None);
+    let seen = simulated(&packets);
+    let gps = SensorKind::Gps;
+    let each = seen.into_iter().zip(&packets);
+    each.map(|(seen, packet)| (seen, packet.carries.contains(gps), packet.samples(gps as usize))).collect()
+}
+
+/// At 59.93° N 30.31° W, 123.45 m up, going west at 15 m/s and a little down, with 9 satellites in view.
+const FLYING: &str = "duration = \"1 s\"\n[start]\nattitude = \"[0, 0, -90] deg\"\nvelocity = \"[0, -15, 0.25] m/s\"\n\
+    [earth]\nlatitude = \"59.93 deg\"\nlongitude = \"-30.31 deg\"\naltitude = \"123.45 m\"\ngravity = \"9.80665 m/s^2\"\nfield = \"[25, 0, 43.30127018922193] uT\"\n\
+    [gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"100 Hz\"\n[mag]\nrate = \"100 Hz\"\n\
+    [gps]\nrate = \"5 Hz\"\nsatellites = 9\n";
+
+/// Its first message, made by Python's struct from the layout alone.
+const FIXED: &str = "24583c001f203600021f0209a097b823a00fefed39300000dc058c0a000024fa190000000000000000000000e803000000000000cd8b0100000000d8b8ba03";
+
+#[test]
+fn msp_says_a_fix_as_inav_reads_it() {
+    let (packets, _) = play(&plan(FLYING), Protocol::Msp, None);
+    assert_eq!(hex(packets[0].bytes()), FIXED);
+    // Negative control: each thing said otherwise makes other bytes.
+    for (said, other) in [
+        ("59.93 deg", "59.9300001 deg"),
+        ("-30.31 deg", "30.31 deg"),
+        ("123.45 m", "123.46 m"),
+        ("[0, -15, 0.25]", "[0, 15, 0.25]"),
+        ("[0, -15, 0.25]", "[0, -15, -0.25]"),
+        ("[0, -15, 0.25]", "[-15, 0, 0.25]"),
+        ("satellites = 9", "satellites = 10"),
+    ] {
+        let (packets, _) = play(&plan(&FLYING.replace(said, other)), Protocol::Msp, None);
+        assert_ne!(hex(packets[0].bytes()), FIXED, "{other}");
+    }
+}
+
+#[test]
+fn a_fix_is_new_in_one_message_and_held_in_the_others() {
+    let all = fixes(FLYING);
+    assert_eq!(all.len(), 100);
+    for (k, (seen, carries, samples)) in all.iter().enumerate() {
+        let is_new = k % 20 == 0;
+        assert_eq!(
+            (seen.flags & simulator::NEW_POSITION != 0, *carries, *samples),
+            (is_new, is_new, is_new.into())
+        );
+        assert_eq!((seen.fix, seen.satellites, seen.ground_speed, seen.course), (2, 9, 1500, 2700), "{k}");
+    }
+    // Slower and out of step with the messages: a fix waits for the next one and is never said before its time.
+    let scene = FLYING.replace("rate = \"100 Hz\"", "rate = \"40 Hz\"").replace("5 Hz", "7 Hz");
+    let plan_of = plan(&scene);
+    let mut fix = None;
+    let (packets, readings) = play(&plan_of, Protocol::Msp, None);
+    for (packet, seen) in packets.iter().zip(simulated(&packets)) {
+        let newest = readings.iter().rev().find(|(t, it)| *t <= packet.due && it.kind == SensorKind::Gps);
+        let longitude = newest.unwrap().1.position().unwrap().fix.position.longitude.to_degrees();
+        assert_eq!(seen.longitude, libm::round(longitude * 1e7) as i32, "{}", packet.due);
+        let is_new = fix.replace(seen.longitude) != Some(seen.longitude);
+        assert_eq!(seen.flags & simulator::NEW_POSITION != 0, is_new, "{}", packet.due);
+    }
+    // Without a receiver nothing is said of a position.
+    let none = fixes(&FLYING[..FLYING.find("[gps]").unwrap()]);
+    assert!(none.iter().all(|(seen, carries, _)| !carries
+        && seen.flags & simulator::NEW_POSITION == 0
+        && (seen.fix, seen.satellites, seen.latitude, seen.velocity) == (0, 0, 0, [0; 3])));
+}
+
+#[test]
+fn the_last_message_stands_where_it_is() {
+    let plan = plan(FLYING);
+    let mut encoder = encoder(Protocol::Msp, &setup(&plan, None));
+    let mut packets = Vec::new();
+    let _: Result<(), ()> = Player::new(&plan, plan.duration, 64).play(|moment| {
+        encoder.encode(&Now { t: moment.t, truth: moment.truth, readings: moment.readings }, &mut packets);
+        Ok(())
+    });
+    let before = *simulated(&packets).last().unwrap();
+    packets.clear();
+    encoder.farewell(plan.duration, &mut packets);
+    let last = simulated(&packets)[0];
+    assert_eq!(
+        (last.latitude, last.longitude, last.altitude),
+        (before.latitude, before.longitude, before.altitude)
+    );
+    assert_eq!((last.velocity, last.ground_speed), ([0; 3], 0));
+    assert!(last.flags & simulator::NEW_POSITION != 0);
+}
+
 /// Bytes of a golden packet whose pressure is that which a scene without a barometer has.
 fn with_pressure(mut imu: vn_imu::Repr, pressure: f32) -> Vec<u8> {
     imu.pressure = pressure;

@@ -1,13 +1,15 @@
 //! `msp`: INAV's simulator message, all sensors in one, at most 100 a second.
 //!
 //! Axes are forward, left, up. The field is sent as its direction, the place's strength as 20480 counts, with its
-//! horizontal part turned to true north: INAV takes the declination as 0. INAV keeps what came last for ever, so the
-//! stream ends with a vehicle that has stopped.
+//! horizontal part turned to true north: INAV takes the declination as 0. A receiver's fix is in every packet from its
+//! first one on, and marked as new in one. INAV keeps what came last for ever, so the stream ends with a vehicle that
+//! has stopped.
 
 mod dialogue;
+mod position;
 mod reader;
 
-use super::latest::{CARRIED, Latest, pascals};
+use super::latest::{Latest, pascals};
 use super::row::{Row, Shared, any};
 use super::{Encoder, Now, Packet, Setup, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
@@ -15,6 +17,7 @@ use crate::geometry::{Body, Nav, Vector};
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
+use position::Position;
 use ratetable_protocols::msp::{self, Message, simulator};
 
 pub(super) static ROW: Row = Row {
@@ -46,6 +49,10 @@ pub(super) static ROW: Row = Row {
 /// As many packets a second as an INAV board takes.
 pub(super) const FASTEST: Rate = Rate::hz(100);
 
+/// What the packets carry.
+const CARRIED: Kinds =
+    Kinds::of(&[SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag, SensorKind::Baro, SensorKind::Gps]);
+
 /// The field's strength in counts.
 const FIELD: f64 = 20480.0;
 /// Counts a deg/s.
@@ -59,6 +66,7 @@ pub(super) struct Msp {
     latest: Latest,
     /// The readings of the moment, the field turned.
     turned: Vec<Reading>,
+    position: Position,
     last: Option<Truth>,
     has_mag: bool,
 }
@@ -66,8 +74,11 @@ pub(super) struct Msp {
 impl Msp {
     pub(super) fn new(setup: &Setup<'_>) -> Msp {
         let at_most = |rate: Rate| if rate.as_hz() > FASTEST.as_hz() { FASTEST } else { rate };
+        let mut latest = Latest::new(setup, at_most);
+        latest.kinds = CARRIED;
         Msp {
-            latest: Latest::new(setup, at_most),
+            latest,
+            position: Position::new(setup.sensors),
             turned: Vec::with_capacity(setup.sensors.len()),
             last: None,
             has_mag: setup.sensors.iter().any(|sensor| sensor.kind == SensorKind::Mag),
@@ -88,15 +99,16 @@ impl Encoder for Msp {
         self.last = Some(*now.truth);
         let strength = now.truth.field.length();
         let mut buffer = [0; msp::MAX_LEN];
-        self.latest.encode(now.t, &self.turned, out, &mut buffer, |_, newest, buffer| {
+        let Msp { latest, turned, position, .. } = self;
+        let mut fix = now.readings.iter().find_map(|reading| Some(reading.position()?.fix));
+        latest.encode(now.t, turned, out, &mut buffer, |due, newest, buffer| {
+            // A packet that is due before now does not know the fix of now.
+            position.take_in(fix.take_if(|_| due == now.t));
             let value = |kind| newest.body(kind).unwrap_or(Vector::ZERO);
-            frame(
-                [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value),
-                strength,
-                pascals(newest),
-                buffer,
-            )
+            let vectors = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value);
+            frame(message(vectors, strength, pascals(newest)), position, buffer)
         });
+        position.take_in(fix);
     }
 
     fn farewell(&mut self, t: SimTime, out: &mut Vec<Packet>) {
@@ -104,7 +116,9 @@ impl Encoder for Msp {
         let [gyro, accel, field] = stopped(truth);
         let mag = if self.has_mag { field + to_true_north(truth) } else { Vector::ZERO };
         let mut buffer = [0; msp::MAX_LEN];
-        let len = frame([gyro, accel, mag], truth.field.length(), pascals(self.latest.newest()), &mut buffer);
+        self.position.stop();
+        let last = message([gyro, accel, mag], truth.field.length(), pascals(self.latest.newest()));
+        let len = frame(last, &mut self.position, &mut buffer);
         out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
     }
 
@@ -124,10 +138,10 @@ fn to_true_north(truth: &Truth) -> Vector<Body> {
     truth.attitude.inverse().apply(turned - field)
 }
 
-/// The frame of gyro, accel and mag; `strength` is the place's field in µT, `pressure` in Pa.
-fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64, buffer: &mut [u8]) -> usize {
+/// What is said of gyro, accel and mag; `strength` is the place's field in µT, `pressure` in Pa.
+fn message([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64) -> simulator::Repr {
     let field = if strength > 0.0 { FIELD / strength } else { 0.0 };
-    let message = Message::Simulator(simulator::Repr {
+    simulator::Repr {
         version: simulator::VERSION,
         flags: FLAGS,
         accel: counts(accel, ACCEL_SCALE / STANDARD_GRAVITY),
@@ -135,9 +149,14 @@ fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64, bu
         pressure: libm::round(pressure) as i32,
         mag: counts(mag, field),
         ..simulator::Repr::default()
-    });
+    }
+}
+
+/// The frame of a message and the position that goes with it.
+fn frame(mut message: simulator::Repr, position: &mut Position, buffer: &mut [u8]) -> usize {
+    position.put_into(&mut message);
     // MAX_LEN holds every frame.
-    msp::encode(&message, buffer).unwrap_or(0)
+    msp::encode(&Message::Simulator(message), buffer).unwrap_or(0)
 }
 
 /// Forward, left and up in the nearest counts, clipped to what fits.
