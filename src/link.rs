@@ -63,6 +63,7 @@ pub use ports::{Port, ports};
 pub use receiver::Receiver;
 pub use scheme::SCHEMES;
 pub use sender::{MAX_WRITE, Sender, Sent};
+pub use serial::Baud;
 pub use spelling::Scheme;
 
 /// An open link.
@@ -166,6 +167,19 @@ impl Link {
     /// Whether it is an unplugged port; the link looks for its path while somebody receives.
     pub fn is_unplugged(&self) -> bool {
         matches!(&self.kind, Kind::Serial(link) if !link.present())
+    }
+
+    /// The speed of a serial port; `None` of a link that has none to set.
+    pub fn baud(&self) -> Option<Baud> {
+        match &self.kind {
+            Kind::Serial(link) => Some(link.baud()),
+            Kind::Pty(_) | Kind::Tcp(_) | Kind::Udp(_) | Kind::Plain => None,
+        }
+    }
+
+    /// Whether something may come back, for the [`Receiver`] that was not taken yet.
+    pub fn answers(&self) -> bool {
+        self.receiver.is_some()
     }
 
     /// Sent bytes that the other side does not have yet, where the system tells: in the buffers of a serial driver,

@@ -262,6 +262,9 @@ pub struct LinkReport {
     /// Packets that each kind of fault on this output acted on; not part of `dropped`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub faults: BTreeMap<&'static str, u64>,
+    /// The rates that the controller asked for while it was sent others, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub asked: Vec<AskedRate>,
     /// What came back during the scene, where the other side answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<AnswersReport>,
@@ -288,6 +291,15 @@ impl LinkReport {
             ..LinkReport::default()
         }
     }
+}
+
+/// A rate that a controller asked for while it was sent another: after a restart, say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct AskedRate {
+    /// Stream time from which packets were made at it, the rest before the scene included, s.
+    pub at_s: f64,
+    /// Packets a second.
+    pub hz: f64,
 }
 
 /// A port that was unplugged while packets were sent.

@@ -29,6 +29,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod beat;
 pub mod dialogue;
 mod fault;
 mod faults;
@@ -84,6 +85,8 @@ pub enum Controller {
     Px4,
     /// PX4 as a program, in lockstep.
     Px4Sitl,
+    /// PX4 with a VectorNav unit on a UART, whose samples its own estimator runs on.
+    Px4Vectornav,
     /// ArduPilot with an external AHRS.
     Ardupilot,
     /// INAV with its HITL simulator message.
@@ -93,18 +96,12 @@ pub enum Controller {
 impl Controller {
     /// Whether it tells its attitude on the same link while the vehicle rests.
     pub(crate) const fn tells_rest(self) -> bool {
-        match self {
-            Controller::Px4 | Controller::Inav => true,
-            Controller::Px4Sitl | Controller::Ardupilot => false,
-        }
+        matches!(self, Controller::Px4 | Controller::Inav)
     }
 
     /// Whether it answers while the scene is played: with its attitude, or in lockstep.
     pub(crate) const fn answers(self) -> bool {
-        match self {
-            Controller::Px4 | Controller::Px4Sitl | Controller::Inav => true,
-            Controller::Ardupilot => false,
-        }
+        matches!(self, Controller::Px4 | Controller::Px4Sitl | Controller::Inav)
     }
 }
 
@@ -211,6 +208,14 @@ pub trait Encoder: Send {
     fn waiting(&self) -> ByKind<u64> {
         ByKind::default()
     }
+
+    /// Whether the other side may ask for other packets while it is sent these: then they are not made far ahead.
+    fn follows(&self) -> bool {
+        false
+    }
+
+    /// From `now` on makes the packets that the other side asks for.
+    fn follow(&mut self, _peer: &Peer, _now: SimTime) {}
 }
 
 /// A level vehicle that faces north, where nothing else is known of the scene.

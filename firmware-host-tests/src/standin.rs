@@ -14,6 +14,7 @@ mod mip;
 mod own;
 mod px4;
 mod px4_sitl;
+mod px4_vectornav;
 mod record;
 mod validator;
 
@@ -28,6 +29,7 @@ pub use make::{Make, Settings};
 pub use mip::Mip;
 pub use px4::{Parameters, Px4};
 pub use px4_sitl::Px4Sitl;
+pub use px4_vectornav::Px4Vectornav;
 pub use record::{Counts, Moment, Record};
 
 use crate::board::{Arrival, Port};
@@ -52,6 +54,11 @@ pub trait Firmware {
 
     /// What has happened so far.
     fn record(&self) -> &Record;
+
+    /// The speed at which it wants its port, baud; `None` leaves it as it is.
+    fn baud(&self) -> Option<u32> {
+        None
+    }
 }
 
 /// A firmware on a link.
@@ -61,12 +68,14 @@ pub struct StandIn {
     clock: Clock,
     waiting: Vec<u8>,
     unsaid: u64,
+    /// The speed that the port was set to.
+    baud: Option<u32>,
 }
 
 impl StandIn {
     /// A firmware on a link, with a clock of its own.
     pub fn new(port: Box<dyn Port + Send>, firmware: Box<dyn Firmware + Send>, clock: Clock) -> Self {
-        Self { port, firmware, clock, waiting: Vec::new(), unsaid: 0 }
+        Self { port, firmware, clock, waiting: Vec::new(), unsaid: 0, baud: None }
     }
 
     /// Runs until the other side is gone or `stop` is set.
@@ -80,10 +89,30 @@ impl StandIn {
         Ok(())
     }
 
+    /// Runs until the other side is gone or the record is as `enough` wants it.
+    ///
+    /// # Errors
+    /// Those of the link, except that the other side is gone.
+    pub fn run_until(&mut self, enough: impl Fn(&Record) -> bool) -> io::Result<()> {
+        while !enough(self.firmware.record()) && self.step()? {}
+        Ok(())
+    }
+
+    /// Boots another firmware on the same port; gives back what came of the one before.
+    pub fn reboot(&mut self, firmware: Box<dyn Firmware + Send>) -> Record {
+        self.waiting.clear();
+        std::mem::replace(&mut self.firmware, firmware).record().clone()
+    }
+
     /// One turn of the loop: false when the other side is gone.
     fn step(&mut self) -> io::Result<bool> {
         let mut bytes = [0; READ_LEN];
         let mut out = Vec::new();
+        let baud = self.firmware.baud();
+        if let Some(baud) = baud.filter(|_| self.baud != baud) {
+            self.port.set_baud(baud)?;
+            self.baud = Some(baud);
+        }
         match self.port.read(&mut bytes, TURN)? {
             Arrival::Bytes(len) => {
                 for (piece, now_us) in self.clock.times(&bytes[..len]) {

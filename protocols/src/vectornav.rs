@@ -1,5 +1,7 @@
 //! `vectornav`: what a VN-100 sends, and the commands that it is set up with.
 //!
+//! ArduPilot asks for [`imu`] and [`ahrs`] packets, PX4 for [`inertial`] and [`navigation`] ones.
+//!
 //! A binary packet is `FA | groups | payload | crc u16`: the groups say which outputs follow, the
 //! payload is little-endian, and the checksum, CRC-16/XMODEM over groups to payload, is sent high
 //! byte first. A [`line::Line`] is a command or the answer to one: `$text*XX` and CR LF, where XX
@@ -27,7 +29,9 @@ use crate::error::Error;
 pub mod ahrs;
 mod decoder;
 pub mod imu;
+pub mod inertial;
 pub mod line;
+pub mod navigation;
 
 pub use decoder::Decoder;
 
@@ -40,7 +44,9 @@ const SYNC: u8 = 0xfa;
 const CRC_LEN: usize = 2;
 
 /// Bytes of the longest packet.
-pub const MAX_LEN: usize = line::MAX_LEN;
+pub const MAX_LEN: usize = binary_len(navigation::GROUPS, navigation::LEN);
+
+const _: () = assert!(line::MAX_LEN <= MAX_LEN);
 
 /// What is said at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +55,10 @@ pub enum Packet {
     Imu(imu::Repr),
     /// The attitude.
     Ahrs(ahrs::Repr),
+    /// What gyro and accelerometer read, as PX4 asks for it.
+    Inertial(inertial::Repr),
+    /// What the other sensors read and the unit's own estimate, as PX4 asks for it.
+    Navigation(navigation::Repr),
     /// A command, or the answer to one.
     Line(line::Line),
 }
@@ -59,6 +69,8 @@ impl Packet {
         match self {
             Self::Imu(_) => "imu",
             Self::Ahrs(_) => "ahrs",
+            Self::Inertial(_) => "inertial",
+            Self::Navigation(_) => "navigation",
             Self::Line(_) => "line",
         }
     }
@@ -68,6 +80,8 @@ impl Packet {
         match self {
             Self::Imu(_) => binary_len(imu::GROUPS, imu::LEN),
             Self::Ahrs(_) => binary_len(ahrs::GROUPS, ahrs::LEN),
+            Self::Inertial(_) => binary_len(inertial::GROUPS, inertial::LEN),
+            Self::Navigation(_) => binary_len(navigation::GROUPS, navigation::LEN),
             Self::Line(line) => line.buffer_len(),
         }
     }
@@ -92,6 +106,14 @@ pub fn encode(packet: &Packet, out: &mut [u8]) -> Result<usize, Error> {
         }
         Packet::Ahrs(repr) => {
             repr.emit(&mut ahrs::Payload::new_checked(payload(ahrs::GROUPS, out))?);
+            seal(out);
+        }
+        Packet::Inertial(repr) => {
+            repr.emit(&mut inertial::Payload::new_checked(payload(inertial::GROUPS, out))?);
+            seal(out);
+        }
+        Packet::Navigation(repr) => {
+            repr.emit(&mut navigation::Payload::new_checked(payload(navigation::GROUPS, out))?);
             seal(out);
         }
         Packet::Line(line) => line.emit(out),

@@ -47,6 +47,16 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     for (link, answers) in report.links.iter().filter_map(|link| Some((link, link.answers.as_ref()?))) {
         text += &answered(&link.name, answers);
     }
+    for (link, asked) in
+        report.links.iter().flat_map(|link| link.asked.iter().map(move |asked| (link, asked)))
+    {
+        text += &format!(
+            "the controller on {} asked for {} Hz: sent so from {} s of the stream on\n",
+            link.name,
+            number(asked.hz),
+            number(asked.at_s)
+        );
+    }
     if let Some(attitude) = &report.attitude {
         text += &known(attitude, report.duration_s);
     }

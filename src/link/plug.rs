@@ -7,7 +7,7 @@
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use rustix::fs::{Mode, OFlags};
 use rustix::io::Errno;
@@ -21,12 +21,23 @@ use crate::os;
 pub(super) struct Plug {
     port: OwnedFd,
     out: AtomicBool,
+    baud: AtomicU32,
 }
 
 impl Plug {
-    /// A plug with a present port.
-    pub(super) fn new(port: OwnedFd) -> Self {
-        Self { port, out: AtomicBool::new(false) }
+    /// Of a port that is there, at this speed.
+    pub(super) fn new(port: OwnedFd, baud: u32) -> Self {
+        Self { port, out: AtomicBool::new(false), baud: AtomicU32::new(baud) }
+    }
+
+    /// The speed at which the port is, or is to be when it is back.
+    pub(super) fn baud(&self) -> u32 {
+        self.baud.load(Ordering::Relaxed)
+    }
+
+    /// Notes another speed.
+    pub(super) fn note_baud(&self, baud: u32) {
+        self.baud.store(baud, Ordering::Relaxed);
     }
 
     /// Whether the port is away.

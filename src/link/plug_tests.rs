@@ -98,3 +98,40 @@ async fn a_packet_that_was_cut_by_the_plug_does_not_go_on_after_it() {
     assert_eq!(read(&master, 50), [2; 50]);
     ear.abort();
 }
+
+fn speed(master: &OwnedFd) -> u32 {
+    rustix::termios::tcgetattr(master).unwrap().output_speed()
+}
+
+#[tokio::test]
+async fn a_port_changes_its_speed_while_it_is_used_and_keeps_it_when_it_is_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("adapter");
+    let mut master = plug_in(&path);
+    let address = format!("serial:{},115200", path.display()).parse().unwrap();
+    let mut link = Link::open(&address).await.unwrap();
+    let baud = link.baud().expect("a port has a speed");
+    let mut sender = link.sender();
+    let mut receiver = link.receiver().unwrap();
+    let ear = tokio::spawn(async move {
+        let mut buffer = BytesMut::new();
+        while receiver.recv(&mut buffer).await.is_ok() {}
+    });
+    assert_eq!((speed(&master), baud.now()), (115_200, 115_200));
+    assert_eq!(sender.send(&[1; 100]), Sent::Done);
+    baud.set(921_600).unwrap();
+    assert_eq!((speed(&master), baud.now()), (921_600, 921_600));
+    assert_eq!(read(&master, 100), [1; 100], "what was sent before is not lost");
+    std::fs::remove_file(&path).unwrap();
+    drop(master);
+    until("the unplugging", || link.is_unplugged()).await;
+    baud.set(460_800).unwrap();
+    master = plug_in(&path);
+    until("the return", || !link.is_unplugged()).await;
+    assert_eq!((speed(&master), baud.now()), (460_800, 460_800));
+    ear.abort();
+    let none: Vec<Address> = ["pty", "tcpin:0", "udpin:0"].map(|it| it.parse().unwrap()).into();
+    for address in none {
+        assert!(Link::open(&address).await.unwrap().baud().is_none(), "{address}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io;
-use std::os::fd::OwnedFd;
+use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,6 +45,9 @@ pub(super) fn parse(rest: &str) -> Result<Address, Problem> {
 const AGAIN: Duration = Duration::from_millis(100);
 /// How soon the receiving side notices that the sending side found the port gone.
 const LOOK: Duration = Duration::from_millis(200);
+/// How often, and with what between, a port that is to change its speed is asked whether it has sent all.
+const LOOKS: u32 = 200;
+const BETWEEN_LOOKS: Duration = Duration::from_millis(1);
 
 /// An open serial port.
 pub(super) struct Serial {
@@ -57,7 +60,7 @@ pub(super) struct Serial {
 pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, LinkError> {
     let (port, stream) = claim(address, path, baud)?;
     let notices = notices(path, baud, &port, &stream);
-    let plug = Arc::new(Plug::new(port));
+    let plug = Arc::new(Plug::new(port, baud));
     let sender = Sender::new(Plugged(Arc::clone(&plug)), Carry::packet());
     let stream = Arc::new(Mutex::new(Some(stream)));
     let input = In {
@@ -65,7 +68,6 @@ pub(super) fn open(address: &Address, path: &Path, baud: u32) -> Result<Link, Li
         stream: Arc::clone(&stream),
         address: address.clone(),
         path: path.into(),
-        baud,
     };
     let serial = Serial { plug, _claim: stream };
     let receiver = input.into();
@@ -83,7 +85,7 @@ fn claim(address: &Address, path: &Path, baud: u32) -> Result<(OwnedFd, SerialSt
     let stream = builder.open_native_async().map_err(|error| match error.kind() {
         // Its only error for a port that another program has claimed since our query.
         ErrorKind::NoDevice => refused(Errno::BUSY),
-        _ => match set_speed(&port, baud) {
+        _ => match set_speed(&port, baud, OptionalActions::Now) {
             Err(errno) => refused(errno),
             Ok(()) => LinkError::Io {
                 link: address.to_string(),
@@ -115,11 +117,40 @@ fn ask(path: &Path) -> Result<OwnedFd, Errno> {
     }
 }
 
-/// Checks that the port supports a speed.
-fn set_speed(port: &OwnedFd, baud: u32) -> Result<(), Errno> {
-    let mut modes = tcgetattr(port)?;
+/// What would be in the way of a speed.
+fn set_speed(port: impl AsFd, baud: u32, when: OptionalActions) -> Result<(), Errno> {
+    let mut modes = tcgetattr(&port)?;
     modes.set_speed(baud)?;
-    tcsetattr(port, OptionalActions::Now, &modes)
+    tcsetattr(&port, when, &modes)
+}
+
+/// The speed of an open port, which may change while others send and receive.
+pub struct Baud(Arc<Plug>);
+
+impl Baud {
+    /// The speed now, baud.
+    pub fn now(&self) -> u32 {
+        self.0.baud()
+    }
+
+    /// Sets another speed once what was written before has gone out, for which it waits a fifth of a second at most. A
+    /// port that is unplugged has it when it is back.
+    ///
+    /// # Errors
+    /// Those of the system: most often that the port cannot run at this speed.
+    pub fn set(&self, baud: u32) -> io::Result<()> {
+        if !self.0.is_out() {
+            let empty = (0..LOOKS).any(|look| {
+                std::thread::sleep(if look == 0 { Duration::ZERO } else { BETWEEN_LOOKS });
+                os::unsent(&*self.0).map_or(true, |bytes| bytes == 0)
+            });
+            // On a line that is never empty the system would wait for ever.
+            let when = if empty { OptionalActions::Drain } else { OptionalActions::Now };
+            set_speed(&*self.0, baud, when)?;
+        }
+        self.0.note_baud(baud);
+        Ok(())
+    }
 }
 
 /// What the user should know about the port's setup.
@@ -151,6 +182,11 @@ fn notices(path: &Path, baud: u32, port: &OwnedFd, stream: &SerialStream) -> Vec
 }
 
 impl Serial {
+    /// Its speed.
+    pub(super) fn baud(&self) -> Baud {
+        Baud(Arc::clone(&self.plug))
+    }
+
     /// Whether the port is there.
     pub(super) fn present(&self) -> bool {
         !self.plug.is_out()
@@ -180,7 +216,6 @@ pub(super) struct In {
     stream: Arc<Mutex<Option<SerialStream>>>,
     address: Address,
     path: PathBuf,
-    baud: u32,
 }
 
 impl In {
@@ -191,7 +226,7 @@ impl In {
                 self.plug.pull();
                 // Release the old descriptor before the port comes back.
                 *stream = None;
-                *stream = Some(found_again(&self.plug, &self.address, &self.path, self.baud).await);
+                *stream = Some(found_again(&self.plug, &self.address, &self.path).await);
                 continue;
             };
             match tokio::time::timeout(LOOK, read(port, buffer)).await {
@@ -204,12 +239,12 @@ impl In {
     }
 }
 
-/// Waits until the port is back, and replaces the old one.
-async fn found_again(plug: &Plug, address: &Address, path: &Path, baud: u32) -> SerialStream {
+/// Waits until the port is back, and puts it in the place of the old one.
+async fn found_again(plug: &Plug, address: &Address, path: &Path) -> SerialStream {
     loop {
         tokio::time::sleep(AGAIN).await;
-        // It is not there yet, or not yet accessible: its permissions are set a moment after it appears.
-        if let Ok((port, stream)) = claim(address, path, baud) {
+        // Not there yet, or not yet ours: its rights are set a moment after it appears.
+        if let Ok((port, stream)) = claim(address, path, plug.baud()) {
             let _ = os::set_low_latency(&port);
             if plug.put_in(&port).is_ok() {
                 return stream;

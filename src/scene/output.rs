@@ -26,6 +26,13 @@ impl Destination {
         Destination { protocol, address, target: None }
     }
 
+    /// The speed at which the packets go out, baud, where there is one: of a serial port that which the controller sets.
+    pub fn baud(&self) -> Option<u32> {
+        let set = self.target.and_then(|target| target.sets_baud);
+        let is_port = matches!(self.address, Address::Serial { .. });
+        set.filter(|_| is_port).or(self.address.baud())
+    }
+
     /// The same packets and the same controller, on the link called `link`.
     pub fn at(&self, link: impl fmt::Display) -> String {
         let what = self.target.map_or(self.protocol.name(), |target| target.name);

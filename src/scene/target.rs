@@ -19,12 +19,14 @@ pub struct Target {
     pub link: Option<&'static str>,
     /// The speed of a serial port that was given none.
     pub baud: Option<u32>,
+    /// The speed that it sets a serial port to before it is sent anything.
+    pub sets_baud: Option<u32>,
     /// The vehicle is held still for at least this long, and until its estimator is up.
     pub rest: SimTime,
     /// Samples a second that it takes at most, Hz: it is played to in real time or slower.
     pub most_hz: Option<u32>,
-    /// Whether it asks for a number of packets a second.
-    pub asks_rate: bool,
+    /// The parameter of the number of packets a second that it asks for, where it does.
+    pub asks_rate: Option<&'static str>,
     /// The scene it is sent by default.
     pub scene: &'static str,
     /// What that scene is set to, as by `--set`.
@@ -36,7 +38,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub static TARGETS: [Target; 5] = [
+pub static TARGETS: [Target; 6] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
@@ -44,9 +46,10 @@ pub static TARGETS: [Target; 5] = [
         controller: Controller::Px4,
         link: None,
         baud: Some(921_600),
+        sets_baud: None,
         rest: SimTime::ZERO,
         most_hz: None,
-        asks_rate: false,
+        asks_rate: None,
         scene: "level-then-turn",
         settings: &[],
         // "Preflight Fail: barometer 0 missing" without one (measured).
@@ -60,14 +63,33 @@ pub static TARGETS: [Target; 5] = [
         controller: Controller::Px4Sitl,
         link: Some("tcpin:4560"),
         baud: None,
+        sets_baud: None,
         rest: SimTime::ZERO,
         most_hz: None,
-        asks_rate: false,
+        asks_rate: None,
         scene: "level-then-turn",
         settings: &[],
         // "Preflight Fail: barometer 0 missing" without one (measured).
         wants: &["baro.rate=50 Hz"],
         asks: "HIL_ACTUATOR_CONTROLS, one for each HIL_SENSOR",
+    },
+    Target {
+        name: "px4-vectornav",
+        about: "PX4, whose vectornav driver reads ratetable as a VN-100 on a plain UART: its EKF2 runs on the samples, without HITL",
+        protocol: Protocol::Vectornav,
+        controller: Controller::Px4Vectornav,
+        link: None,
+        // A new unit's, which its driver tries first.
+        baud: Some(115_200),
+        sets_baud: Some(921_600),
+        rest: SimTime(5 * NANOS),
+        most_hz: None,
+        asks_rate: Some("VN_IMU_RATE"),
+        scene: "level-then-turn",
+        // As many as it asks for unless VN_IMU_RATE says otherwise.
+        settings: &["gyro.rate=800 Hz", "accel.rate=800 Hz"],
+        wants: &[],
+        asks: "nothing: it sets up two outputs, the first at the rate in VN_IMU_RATE",
     },
     Target {
         name: "ardupilot",
@@ -76,10 +98,11 @@ pub static TARGETS: [Target; 5] = [
         controller: Controller::Ardupilot,
         link: None,
         baud: Some(115_200),
+        sets_baud: None,
         // Its EKF aligns yaw 6.4 s after it boots (measured).
         rest: SimTime(10 * NANOS),
         most_hz: None,
-        asks_rate: true,
+        asks_rate: Some("EAHRS_RATE"),
         scene: "level-then-turn",
         // As many as its default baud rate carries; it asks for its own number of packets.
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
@@ -93,9 +116,10 @@ pub static TARGETS: [Target; 5] = [
         controller: Controller::Ardupilot,
         link: None,
         baud: Some(115_200),
+        sets_baud: None,
         rest: SimTime(10 * NANOS),
         most_hz: None,
-        asks_rate: false,
+        asks_rate: None,
         scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
         wants: &[],
@@ -108,9 +132,10 @@ pub static TARGETS: [Target; 5] = [
         controller: Controller::Inav,
         link: None,
         baud: Some(115_200),
+        sets_baud: None,
         rest: SimTime(20 * NANOS),
         most_hz: Some(100),
-        asks_rate: false,
+        asks_rate: None,
         scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
         wants: &[],
@@ -155,6 +180,7 @@ impl Target {
         let mut lines = vec![format!("protocol {}", self.protocol.name())];
         lines.extend(self.link.map(|link| format!("link {link} by default")));
         lines.extend(self.baud.map(|baud| format!("{baud} baud on a serial port by default")));
+        lines.extend(self.sets_baud.map(|baud| format!("changes a serial port to {baud} baud")));
         lines.extend(self.most_hz.map(|hz| format!("at most {hz} samples a second of each sensor")));
         lines.push(match self.rest {
             SimTime::ZERO => "holds still until its estimator is ready".into(),

@@ -42,7 +42,7 @@ impl Budget {
             (bytes * speed, packets * speed)
         };
         let (bytes_per_s, packets_per_s) = load(&plan.sensors, output.to.protocol, output.wire);
-        let capacity = output.to.address.baud().map(bytes_per_second);
+        let capacity = output.to.baud().map(bytes_per_second);
         let mut budget =
             Budget { to: output.to.clone(), packets_per_s, bytes_per_s, capacity, ways_out: Vec::new() };
         if let Some(capacity) = capacity.filter(|_| !budget.fits()) {
@@ -71,7 +71,7 @@ impl Budget {
     pub fn arithmetic(&self) -> String {
         let (packets, bytes) = (number(self.packets_per_s), number(self.bytes_per_s));
         let needs = format!("{} needs {bytes} bytes/s ({packets} packets/s)", self.to);
-        match (self.to.address.baud(), self.capacity, self.share()) {
+        match (self.to.baud(), self.capacity, self.share()) {
             (Some(baud), Some(capacity), Some(share)) => format!(
                 "{needs}, and {baud} baud carries {} (8N1: {baud}/10), so that is {:.0} % of it",
                 number(capacity),
@@ -104,7 +104,7 @@ pub fn afford(
     warn: &mut dyn FnMut(String),
 ) -> Result<(), String> {
     let mut refused = Vec::new();
-    for output in outputs.iter().filter(|it| it.to.address.baud().is_some() && !asks_rate(it)) {
+    for output in outputs.iter().filter(|it| it.to.baud().is_some() && asks_rate(it).is_none()) {
         let budget = Budget::of(plan, output, speed);
         let stretched = output.overload == Overload::Stretch;
         match budget.fits() {
@@ -122,20 +122,21 @@ pub fn afford(
 /// The controller asks for this number of packets a second, divided by a whole number (VN-100).
 const UNIT_RATE: u64 = 800;
 
-/// Whether the controller of an output asks for its number of packets: until it has, its budget is not known.
-fn asks_rate(output: &Output) -> bool {
-    output.to.target.is_some_and(|target| target.asks_rate)
+/// The parameter of the number of packets that the controller of an output asks for: until it has, its budget is not
+/// known.
+fn asks_rate(output: &Output) -> Option<&'static str> {
+    output.to.target.and_then(|target| target.asks_rate)
 }
 
 /// Checks the budget of an output whose controller has asked for its number of packets. Returns what is wrong, with the
 /// greatest number that fits and the baud rate that carries what it asks for.
 pub(super) fn afford_asked(plan: &Plan, output: &Output, speed: f64, peer: Peer) -> Option<String> {
-    let rate = peer.rate.filter(|_| asks_rate(output))?;
+    let (parameter, rate) = (asks_rate(output)?, peer.rate?);
     let budget = Budget::asked(plan, output, speed, peer);
     let fits = |rate: Rate| Budget::asked(plan, output, speed, Peer { rate: Some(rate), ..peer }).fits();
     let lower = (1..=UNIT_RATE).filter_map(|divisor| Rate::new(UNIT_RATE, divisor));
     let lower = lower.filter(|lower| lower.as_hz() < rate.as_hz()).find(|lower| fits(*lower));
-    let lower = lower.map_or(String::new(), |lower| format!("ask for {lower} (EAHRS_RATE), "));
+    let lower = lower.map_or(String::new(), |lower| format!("ask for {lower} ({parameter}), "));
     let baud = STANDARD_BAUDS.iter().find(|baud| bytes_per_second(**baud) >= budget.bytes_per_s);
     let baud = baud.map_or("a faster link".into(), |baud| format!("a baud rate of {baud} at both ends"));
     let what = || format!("the controller asks for {rate}: {}; {lower}or use {baud}", budget.arithmetic());

@@ -119,8 +119,13 @@ impl Control {
             outputs.push(OpenOutput::open(output).await?);
         }
         let paced = job.speed.is_paced();
-        let sides =
-            outputs.iter_mut().map(|it| Side::new(&it.output, it.link.sender(), paced, job.rest)).collect();
+        let sides = outputs.iter_mut().map(|it| {
+            let baud = it.link.baud();
+            let mut side = Side::new(&it.output, it.link.sender(), paced, job.rest);
+            side.baud = baud;
+            side
+        });
+        let sides = sides.collect();
         let shared = Arc::new(Shared::before(job.rest));
         let lockstep = job.outputs.iter().any(step::in_lockstep);
         let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
@@ -153,8 +158,12 @@ impl Control {
 
     /// Starts the producer thread if it has not started.
     fn start(&self, producing: Producing) -> Producing {
-        let talk = self.talk.borrow();
-        producing.start(&self.job, &self.shared, talk.sides.iter().map(Side::peer))
+        let mut talk = self.talk.borrow_mut();
+        let peers = talk.sides.iter_mut().zip(&self.outputs).map(|(side, output)| {
+            let (peer, news) = side.tell();
+            (peer, Some(news).filter(|_| output.answers))
+        });
+        producing.start(&self.job, &self.shared, peers)
     }
 
     /// True when every link has somebody and every other side accepts samples; false when the user or the command

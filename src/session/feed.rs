@@ -2,11 +2,13 @@
 
 use crate::motion::Truth;
 use crate::player::Moment;
+use crate::report::AskedRate;
 use crate::scene::{Output, Plan};
 use crate::sensor::ByKind;
 use crate::time::SimTime;
 use crate::wire::{self, Acts, Encoder, Faults, Now, Packet, Protocol, Setup, dialogue::Peer};
 use std::collections::BTreeMap;
+use std::sync::mpsc::Receiver;
 
 /// The producer's half of an output: makes packets of readings and applies the output's faults to them.
 pub(super) struct Feed {
@@ -21,6 +23,10 @@ pub(super) struct Feed {
     packets: u64,
     /// The packets made last.
     newest: Vec<Packet>,
+    /// What the other side asks for from now on.
+    news: Option<Receiver<Peer>>,
+    peer: Peer,
+    asked: Vec<AskedRate>,
 }
 
 /// What was made for one output.
@@ -32,6 +38,8 @@ pub(super) struct Made {
     pub packets: u64,
     /// What each fault did.
     pub faults: Vec<Acts>,
+    /// The rates that the other side asked for meanwhile.
+    pub asked: Vec<AskedRate>,
 }
 
 impl Feed {
@@ -48,7 +56,30 @@ impl Feed {
             samples: ByKind::default(),
             packets: 0,
             newest: Vec::new(),
+            news: None,
+            peer,
+            asked: Vec::new(),
         }
+    }
+
+    /// Makes what the other side asks for, whenever it does.
+    pub(super) fn listen(&mut self, news: Receiver<Peer>) {
+        self.news = Some(news).filter(|_| self.encoder.follows());
+    }
+
+    /// Whether what it makes may change: then it is not made far ahead.
+    pub(super) fn follows(&self) -> bool {
+        self.news.is_some()
+    }
+
+    /// From `t` on makes what was asked for last.
+    fn follow(&mut self, t: SimTime) {
+        let Some(peer) = self.news.as_ref().and_then(|news| news.try_iter().last()) else { return };
+        self.encoder.follow(&peer, t);
+        if let Some(rate) = peer.rate.filter(|_| peer.rate != self.peer.rate) {
+            self.asked.push(AskedRate { at_s: t.seconds(), hz: rate.as_hz() });
+        }
+        self.peer = peer;
     }
 
     /// Whether a packet may go out at another time than that of its readings.
@@ -71,6 +102,7 @@ impl Feed {
             self.samples[reading.kind as usize] += 1;
         }
         self.newest.clear();
+        self.follow(t);
         self.encoder.encode(&Now { t, truth, readings }, &mut self.newest);
         if let Some(faults) = self.faults.as_mut().filter(|_| self.in_scene) {
             faults.pass(t, &mut self.newest);
@@ -107,6 +139,7 @@ impl Feed {
             waiting: self.encoder.waiting(),
             packets: self.packets,
             faults: self.faults.map_or(Vec::new(), Faults::into_acts),
+            asked: self.asked,
         }
     }
 }

@@ -19,6 +19,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 pub(super) struct OpenOutput {
     pub output: Output,
     pub link: Link,
+    /// Whether something may come back on it.
+    pub answers: bool,
     /// The highest fill of the link's buffers, bytes.
     fullest: Option<usize>,
     /// The port was unplugged.
@@ -31,7 +33,9 @@ impl OpenOutput {
     /// Opens its link.
     pub(super) async fn open(output: &Output) -> Result<OpenOutput, LinkError> {
         let link = Link::open(&output.to.address).await?;
-        Ok(OpenOutput { output: output.clone(), link, fullest: None, unplugged: false, abandoned: false })
+        let answers = link.answers();
+        let output = output.clone();
+        Ok(OpenOutput { output, link, answers, fullest: None, unplugged: false, abandoned: false })
     }
 
     /// What to connect to.
@@ -101,7 +105,7 @@ impl OpenOutput {
     pub(super) fn report(&self, account: &Account, side: &Side) -> LinkReport {
         let Account { made, tally, left, .. } = account;
         let address = &self.output.to.address;
-        let baud = address.baud();
+        let baud = self.link.baud().map(|port| port.now()).or(address.baud());
         LinkReport {
             to: self.output.to.to_string(),
             name: self.name().to_string(),
@@ -120,6 +124,7 @@ impl OpenOutput {
             faults: made.by_fault(&self.output),
             answers: side.report(tally),
             crc_errors: side.damaged(),
+            asked: made.asked.clone(),
             broken: self.broken(account),
             ..LinkReport::default()
         }

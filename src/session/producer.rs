@@ -12,8 +12,8 @@ use std::time::Duration;
 
 /// Wait when the ring is full: far shorter than its contents last.
 const FULL: Duration = Duration::from_micros(200);
-/// How far ahead of the last sent packet the rest is made, ns of stream time: the scene can start this soon after
-/// it may.
+/// How far ahead of what is sent the rest is made, ns of stream time: so soon the scene can begin once it may. Where a
+/// controller may ask for another rate the scene is made no further ahead either.
 const LEAD: i64 = 200_000_000;
 /// Time between two looks at the progress of sending: far less than the lead.
 const AHEAD: Duration = Duration::from_millis(1);
@@ -35,8 +35,9 @@ struct Stopped;
 
 /// Plays the task into the ring. Returns the feeds, which know what was made and hold the farewell.
 pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, shared: &Shared) -> Vec<Feed> {
-    let mut maker = Maker { feeds, items: Vec::new(), start: SimTime::ZERO, ring, shared };
-    // An early stop is no failure: what was made is counted either way.
+    let follows = feeds.iter().any(Feed::follows);
+    let mut maker = Maker { feeds, follows, items: Vec::new(), start: SimTime::ZERO, ring, shared };
+    // Stopping early is no failure: what was made is counted either way.
     let _ = maker.play(task);
     maker.end();
     shared.all_made.store(true, Ordering::Release);
@@ -46,6 +47,8 @@ pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, sh
 struct Maker<'a> {
     /// One for each output.
     feeds: Vec<Feed>,
+    /// Whether one makes what is asked for meanwhile, so that the scene too is made little ahead.
+    follows: bool,
     /// The items made last.
     items: Vec<Item>,
     /// Stream time at which the present part began.
@@ -107,6 +110,9 @@ impl Maker<'_> {
             return Err(Stopped);
         }
         let t = self.start + t;
+        if self.follows {
+            self.wait_for_lead(t)?;
+        }
         let moment = Moment { t, truth: &Truth { t, ..*truth }, readings };
         let sent = self.shared.sent();
         for (lane, feed) in self.feeds.iter_mut().enumerate() {

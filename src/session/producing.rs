@@ -9,6 +9,7 @@ use crate::wire::dialogue::Peer;
 use rtrb::Producer;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::mpsc::Receiver;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -22,16 +23,22 @@ pub(super) enum Producing {
 }
 
 impl Producing {
-    /// Starts the thread with what is known of the other side of each output, unless it has started.
+    /// Starts it with what is known of the other side of each output, and where that may change, how it is told; if it
+    /// is not started yet.
     pub(super) fn start(
         self,
         job: &Job,
         shared: &Arc<Shared>,
-        peers: impl Iterator<Item = Peer>,
+        peers: impl Iterator<Item = (Peer, Option<Receiver<Peer>>)>,
     ) -> Producing {
         let Producing::NotYet(ring) = self else { return self };
         let outputs = job.outputs.iter().zip(peers).enumerate();
-        let feeds = outputs.map(|(i, (output, peer))| Feed::new(&job.plan, i, output, peer)).collect();
+        let feeds = outputs.map(|(i, (output, (peer, news)))| {
+            let mut feed = Feed::new(&job.plan, i, output, peer);
+            news.into_iter().for_each(|news| feed.listen(news));
+            feed
+        });
+        let feeds = feeds.collect();
         let (plan, end, rest, shared) = (job.plan.clone(), job.end, job.rest, shared.clone());
         Producing::Started(thread::spawn(move || {
             producer::produce(Task { plan: &plan, end, rest }, feeds, ring, &shared)

@@ -53,6 +53,14 @@ impl Way {
         }
     }
 
+    /// Whether nothing that was said waits for the pacing thread.
+    pub(super) fn is_empty(&self) -> bool {
+        match self {
+            Way::Link(..) => true,
+            Way::Ring(ring, _) => ring.slots() == ROOM,
+        }
+    }
+
     /// The number of replies that the link took before it was given away.
     pub(super) fn written(&self) -> u64 {
         match self {

@@ -6,7 +6,7 @@ use super::replies::Way;
 use super::settling::Settling;
 use super::step::{Step, in_lockstep};
 use super::tally::Tally;
-use crate::link::Sender;
+use crate::link::{Baud, Sender};
 use crate::report::AnswersReport;
 use crate::scene::Output;
 use crate::score::Timed;
@@ -15,6 +15,7 @@ use crate::wire::Controller;
 use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender as News, channel};
 
 /// One other side.
 pub(super) struct Side {
@@ -27,6 +28,12 @@ pub(super) struct Side {
     pub answers: Answers,
     /// As the user asked for it: `inav@/dev/ttyACM0`.
     pub to: String,
+    /// The speed of its port, where it has one.
+    pub baud: Option<Baud>,
+    /// The speed that it asked for, until what was said before has gone out.
+    next_baud: Option<u32>,
+    /// To whom it is told what is known of it, once that changes.
+    news: Option<(Peer, News<Peer>)>,
     protocol: &'static str,
     /// Whether a controller of its make answers while the scene is played.
     must_answer: bool,
@@ -60,6 +67,9 @@ impl Side {
                 .map(Settling::new),
             notice: None,
             timed: paced || in_lockstep(output),
+            baud: None,
+            next_baud: None,
+            news: None,
             protocol: output.to.protocol.name(),
             way: Way::Link(sender, 0),
             took: Arc::default(),
@@ -74,6 +84,42 @@ impl Side {
     /// Counts another packet as read.
     pub(super) fn took(&mut self) {
         self.took.fetch_add(1, Ordering::Release);
+    }
+
+    /// It goes on at another speed.
+    pub(super) fn change_speed(&mut self, baud: u32) {
+        self.next_baud = self.baud.as_ref().map(|_| baud);
+    }
+
+    /// Follows it to the speed that it asked for, as soon as what it was answered is written; what the user should know.
+    pub(super) fn follow_speed(&mut self) -> Option<String> {
+        let baud = self.next_baud.take_if(|_| self.way.is_empty())?;
+        let port = self.baud.as_ref().filter(|port| port.now() != baud)?;
+        Some(match port.set(baud) {
+            Ok(()) => format!("the flight controller sets {baud} baud: the port goes on at that"),
+            Err(error) => format!(
+                "the flight controller sets {baud} baud, and the port does not follow ({error}): it stays at {}",
+                port.now()
+            ),
+        })
+    }
+
+    /// What is known of it now; what changes is told to whoever has the other end.
+    pub(super) fn tell(&mut self) -> (Peer, Receiver<Peer>) {
+        let (news, other_end) = channel();
+        let peer = self.peer();
+        self.news = Some((peer, news));
+        (peer, other_end)
+    }
+
+    /// Tells what has changed.
+    pub(super) fn pass_on(&mut self) {
+        let peer = self.peer();
+        if let Some((told, news)) = self.news.as_mut().filter(|(told, _)| *told != peer) {
+            *told = peer;
+            // Who makes no packets any more need not know.
+            let _ = news.send(peer);
+        }
     }
 
     /// Counts an answer that came at `now`, ns, at that scene time: an acknowledgement, or an estimate. In lockstep only

@@ -58,7 +58,10 @@ impl Talk {
     fn converse(&mut self, link: usize, with: impl FnOnce(&mut dyn Dialogue, &mut Talk)) {
         if let Some(mut dialogue) = self.sides[link].dialogue.take() {
             with(&mut *dialogue, self);
-            self.sides[link].dialogue = Some(dialogue);
+            let side = &mut self.sides[link];
+            side.dialogue = Some(dialogue);
+            side.pass_on();
+            self.notices.extend(side.follow_speed());
         }
     }
 
@@ -89,6 +92,7 @@ impl Talk {
                     pacing.unpark();
                 }
             }
+            Said::Speed(baud) => side.change_speed(baud),
             Said::Notice(text) => {
                 side.keep(&text);
                 self.notices.push(text);

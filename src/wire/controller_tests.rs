@@ -9,7 +9,7 @@ use crate::sensor::{Kinds, SensorKind};
 use crate::time::NANOS;
 use crate::time::Rate;
 use ratetable_protocols::msp::{self, Message, simulator};
-use ratetable_protocols::vectornav::{ahrs, imu as vn_imu};
+use ratetable_protocols::vectornav::{ahrs, imu as vn_imu, inertial as vn_inertial, navigation};
 use ratetable_protocols::{mip, vectornav as vn};
 
 /// Three error-free sensors at 100 Hz.
@@ -55,7 +55,7 @@ fn outputs(packets: &[Packet]) -> (Vec<vn_imu::Repr>, Vec<ahrs::Repr>) {
         decoder.feed(packet.bytes(), |received| match received.unwrap() {
             vn::Packet::Imu(seen) => imus.push(seen),
             vn::Packet::Ahrs(seen) => attitudes.push(seen),
-            vn::Packet::Line(line) => panic!("{line:?}"),
+            other => panic!("{other:?}"),
         });
     }
     (imus, attitudes)
@@ -153,6 +153,95 @@ fn msp_leaves_the_magnetometers_own_errors_on_its_own_axes() {
     }
 }
 
+/// Simulator messages with a fix, each with the packet's samples of the receiver.
+fn fixes(scene: &str) -> Vec<(simulator::Repr, bool, u64)> {
+    let (packets, _) = play(&plan(scene), Protocol::Msp, None);
+    let seen = simulated(&packets);
+    let gps = SensorKind::Gps;
+    let each = seen.into_iter().zip(&packets);
+    each.map(|(seen, packet)| (seen, packet.carries.contains(gps), packet.samples(gps as usize))).collect()
+}
+
+/// At 59.93° N 30.31° W, 123.45 m up, going west at 15 m/s and a little down, with 9 satellites in view.
+const FLYING: &str = "duration = \"1 s\"\n[start]\nattitude = \"[0, 0, -90] deg\"\nvelocity = \"[0, -15, 0.25] m/s\"\n\
+    [earth]\nlatitude = \"59.93 deg\"\nlongitude = \"-30.31 deg\"\naltitude = \"123.45 m\"\ngravity = \"9.80665 m/s^2\"\nfield = \"[25, 0, 43.30127018922193] uT\"\n\
+    [gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"100 Hz\"\n[mag]\nrate = \"100 Hz\"\n\
+    [gps]\nrate = \"5 Hz\"\nsatellites = 9\n";
+
+/// Its first message, made by Python's struct from the layout alone.
+const FIXED: &str = "24583c001f203600021f0209a097b823a00fefed39300000dc058c0a000024fa190000000000000000000000e803000000000000cd8b0100000000d8b8ba03";
+
+#[test]
+fn msp_says_a_fix_as_inav_reads_it() {
+    let (packets, _) = play(&plan(FLYING), Protocol::Msp, None);
+    assert_eq!(hex(packets[0].bytes()), FIXED);
+    // Negative control: each thing said otherwise makes other bytes.
+    for (said, other) in [
+        ("59.93 deg", "59.9300001 deg"),
+        ("-30.31 deg", "30.31 deg"),
+        ("123.45 m", "123.46 m"),
+        ("[0, -15, 0.25]", "[0, 15, 0.25]"),
+        ("[0, -15, 0.25]", "[0, -15, -0.25]"),
+        ("[0, -15, 0.25]", "[-15, 0, 0.25]"),
+        ("satellites = 9", "satellites = 10"),
+    ] {
+        let (packets, _) = play(&plan(&FLYING.replace(said, other)), Protocol::Msp, None);
+        assert_ne!(hex(packets[0].bytes()), FIXED, "{other}");
+    }
+}
+
+#[test]
+fn a_fix_is_new_in_one_message_and_held_in_the_others() {
+    let all = fixes(FLYING);
+    assert_eq!(all.len(), 100);
+    for (k, (seen, carries, samples)) in all.iter().enumerate() {
+        let is_new = k % 20 == 0;
+        assert_eq!(
+            (seen.flags & simulator::NEW_POSITION != 0, *carries, *samples),
+            (is_new, is_new, is_new.into())
+        );
+        assert_eq!((seen.fix, seen.satellites, seen.ground_speed, seen.course), (2, 9, 1500, 2700), "{k}");
+    }
+    // Slower and out of step with the messages: a fix waits for the next one and is never said before its time.
+    let scene = FLYING.replace("rate = \"100 Hz\"", "rate = \"40 Hz\"").replace("5 Hz", "7 Hz");
+    let plan_of = plan(&scene);
+    let mut fix = None;
+    let (packets, readings) = play(&plan_of, Protocol::Msp, None);
+    for (packet, seen) in packets.iter().zip(simulated(&packets)) {
+        let newest = readings.iter().rev().find(|(t, it)| *t <= packet.due && it.kind == SensorKind::Gps);
+        let longitude = newest.unwrap().1.position().unwrap().fix.position.longitude.to_degrees();
+        assert_eq!(seen.longitude, libm::round(longitude * 1e7) as i32, "{}", packet.due);
+        let is_new = fix.replace(seen.longitude) != Some(seen.longitude);
+        assert_eq!(seen.flags & simulator::NEW_POSITION != 0, is_new, "{}", packet.due);
+    }
+    // Without a receiver nothing is said of a position.
+    let none = fixes(&FLYING[..FLYING.find("[gps]").unwrap()]);
+    assert!(none.iter().all(|(seen, carries, _)| !carries
+        && seen.flags & simulator::NEW_POSITION == 0
+        && (seen.fix, seen.satellites, seen.latitude, seen.velocity) == (0, 0, 0, [0; 3])));
+}
+
+#[test]
+fn the_last_message_stands_where_it_is() {
+    let plan = plan(FLYING);
+    let mut encoder = encoder(Protocol::Msp, &setup(&plan, None));
+    let mut packets = Vec::new();
+    let _: Result<(), ()> = Player::new(&plan, plan.duration, 64).play(|moment| {
+        encoder.encode(&Now { t: moment.t, truth: moment.truth, readings: moment.readings }, &mut packets);
+        Ok(())
+    });
+    let before = *simulated(&packets).last().unwrap();
+    packets.clear();
+    encoder.farewell(&at_rest(plan.duration), &mut packets);
+    let last = simulated(&packets)[0];
+    assert_eq!(
+        (last.latitude, last.longitude, last.altitude),
+        (before.latitude, before.longitude, before.altitude)
+    );
+    assert_eq!((last.velocity, last.ground_speed), ([0; 3], 0));
+    assert!(last.flags & simulator::NEW_POSITION != 0);
+}
+
 /// Bytes of a golden packet with the pressure of a scene without a barometer.
 fn with_pressure(mut imu: vn_imu::Repr, pressure: f32) -> Vec<u8> {
     imu.pressure = pressure;
@@ -236,6 +325,174 @@ fn ahrs_packets_carry_the_truth_fifty_times_a_second() {
             let q = Euler { roll, pitch, yaw }.to_quat();
             assert!(truth.angle_to(Attitude::from_quat(q)) < 1e-6);
         }
+    }
+}
+
+/// PX4's two outputs, with when they are due.
+fn px4_outputs(packets: &[Packet]) -> (Vec<(SimTime, vn_inertial::Repr)>, Vec<(SimTime, navigation::Repr)>) {
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    let mut decoder = vn::Decoder::new();
+    for packet in packets {
+        decoder.feed(packet.bytes(), |received| match received.unwrap() {
+            vn::Packet::Inertial(seen) => first.push((packet.due, seen)),
+            vn::Packet::Navigation(seen) => second.push((packet.due, seen)),
+            other => panic!("{other:?}"),
+        });
+    }
+    (first, second)
+}
+
+/// PX4 that asked for its samples at this rate.
+fn px4(rate: u32) -> Peer {
+    let controller = Some(Controller::Px4Vectornav);
+    Peer { rate: Some(Rate::hz(rate)), second: Some(Rate::hz(100)), controller, ..Peer::default() }
+}
+
+fn played_to(plan: &Plan, peer: Peer) -> Vec<Packet> {
+    let mut encoder = encoder(Protocol::Vectornav, &Setup { peer, ..setup(plan, None) });
+    let mut packets = Vec::new();
+    let _: Result<(), ()> = Player::new(plan, plan.duration, 64).play(|moment| {
+        encoder.encode(&Now { t: moment.t, truth: moment.truth, readings: moment.readings }, &mut packets);
+        Ok(())
+    });
+    packets
+}
+
+/// The inertial packet that PX4's driver was given when it was measured.
+const INERTIAL: &str = "fa060100000600f4f04606000000ef0e5eba4ea1b13c7dbc1cc1184260bebe1f3939f2e05cb8d5bc";
+
+#[test]
+fn vectornav_sends_px4_the_golden_bytes_of_its_first_output() {
+    let plan = plan(&format!("duration = \"60 s\"\n{}", EXACT.replace("100 Hz", "1 Hz")));
+    let mut encoder = encoder(Protocol::Vectornav, &Setup { peer: px4(200), ..setup(&plan, None) });
+    let values =
+        [[-0.219_002_13, 0.000_176_548, -5.266_158_4e-5], [-0.000_847_085_3, 0.021_683_361, -9.796_018], MAG];
+    let readings = [0, 1, 2].map(|i| {
+        let [x, y, z] = values[i];
+        Reading::zero(i, SensorKind::ALL[i]).with_body(Vector::new(x, y, z))
+    });
+    let mut packets = Vec::new();
+    for t in [0, 26_960_000_000].map(SimTime) {
+        encoder.encode(&Now { t, truth: &at_rest(t), readings: &readings }, &mut packets);
+    }
+    let inertial: Vec<_> = packets.iter().filter(|packet| packet.bytes()[1] == 0x06).collect();
+    let last = inertial.last().unwrap();
+    assert_eq!((hex(last.bytes()).as_str(), last.due), (INERTIAL, SimTime(26_960_000_000)));
+    let carries = Kinds::of(&[SensorKind::Gyro, SensorKind::Accel]);
+    assert_eq!(last.carries, carries);
+}
+
+#[test]
+fn px4s_outputs_come_evenly_at_their_own_rates_and_between_them_carry_every_sample() {
+    for (rate, asked) in [("250 Hz", 200), ("250 Hz", 800), ("200 Hz", 200), ("1 kHz", 400)] {
+        let scene = TOGETHER.replacen("100 Hz", rate, 2);
+        let scene = format!("{scene}[baro]\nrate = \"25 Hz\"\n");
+        let plan = plan(&scene);
+        let packets = played_to(&plan, px4(asked));
+        assert!(packets.windows(2).all(|pair| pair[0].due <= pair[1].due), "{rate}");
+        let (first, second) = px4_outputs(&packets);
+        let last = plan.sensors[0].rate.ticks_before(SimTime::ZERO, plan.duration) - 1;
+        let last = plan.sensors[0].rate.tick(last);
+        for (times, hz) in [
+            (first.iter().map(|(due, seen)| (*due, seen.time_ns)).collect::<Vec<_>>(), asked),
+            (second.iter().map(|(due, seen)| (*due, seen.time_ns)).collect(), 100),
+        ] {
+            let expected = Rate::hz(hz).ticks_before(SimTime::ZERO, SimTime(last.0 + 1));
+            assert_eq!(times.len() as u64, expected, "{rate} {hz}");
+            for (k, (due, time_ns)) in times.into_iter().enumerate() {
+                assert_eq!((due, time_ns), (Rate::hz(hz).tick(k as u64), due.0 as u64), "{rate} {hz} {k}");
+            }
+        }
+        for packet in &packets {
+            let is_first = packet.bytes().len() == 40;
+            let other = [SensorKind::Mag, SensorKind::Gyro][usize::from(!is_first)];
+            assert!(!packet.carries.contains(other) && packet.replaced[other as usize] == 0);
+        }
+        let carried = |kind: SensorKind| -> u64 { packets.iter().map(|it| it.samples(kind as usize)).sum() };
+        // A mag tick at 100 Hz has a navigation packet of its own; the gyro's own ticks end with an inertial packet or
+        // wait for one.
+        assert_eq!(carried(SensorKind::Mag), 250 - u64::from(last < SimTime(2_490_000_000)), "{rate}");
+        assert!(
+            carried(SensorKind::Gyro) + 5 >= plan.sensors[0].rate.ticks_before(SimTime::ZERO, plan.duration)
+        );
+    }
+}
+
+#[test]
+fn px4s_second_output_holds_readings_truth_and_nothing_of_a_position() {
+    let scene = TOGETHER.replace("100 Hz", "200 Hz");
+    let force = "[[force]]\nstart = \"0 s\"\nduration = \"2 s\"\nacceleration = \"[2, -3, 4] m/s^2\"\nframe = \"nav\"\n";
+    let plan = plan(&format!("{scene}{force}[baro]\nrate = \"200 Hz\"\n"));
+    let (packets, readings) = play(&plan, Protocol::Vectornav, None);
+    drop(packets);
+    let (_, second) = px4_outputs(&played_to(&plan, px4(200)));
+    assert!(second.len() > 240);
+    for (due, seen) in second {
+        let truth = plan.trajectory.at(due);
+        let [x, y, z, w] = seen.xyzw.map(f64::from);
+        let q = glam::DQuat::from_xyzw(x, y, z, w).normalize();
+        assert!(truth.attitude.angle_to(Attitude::from_quat(q)) < 1e-6, "{due}");
+        let pushed = due < SimTime(2 * NANOS);
+        let expected = if pushed { [2.0, -3.0, 4.0] } else { [0.0; 3] };
+        for (seen, expected) in seen.acceleration.into_iter().zip(expected) {
+            assert!((f64::from(seen) - expected).abs() < 1e-5, "{due}");
+        }
+        let read = |kind| readings.iter().find(|(t, reading)| *t == due && reading.kind == kind).unwrap().1;
+        let mag = read(SensorKind::Mag).body().unwrap().value.v.to_array();
+        assert_eq!(seen.mag, mag.map(|x| (x / 100.0) as f32));
+        let pressure = read(SensorKind::Baro).pressure().unwrap().value;
+        assert_eq!(seen.pressure, (pressure / 1000.0) as f32);
+        assert_eq!(
+            (seen.status, seen.position, seen.velocity, seen.position_uncertainty, seen.velocity_uncertainty),
+            (0, [0.0; 3], [0.0; 3], 0.0, 0.0)
+        );
+    }
+}
+
+#[test]
+fn a_controller_that_asks_for_another_rate_gets_it_from_the_next_packet_on() {
+    let plan = plan(&TOGETHER.replace("100 Hz", "1 kHz"));
+    let ardupilot = |rate| Peer {
+        rate: Some(Rate::hz(rate)),
+        second: Some(Rate::hz(50)),
+        controller: Some(Controller::Ardupilot),
+        ..Peer::default()
+    };
+    for (before, after) in [(ardupilot(100), ardupilot(200)), (px4(200), px4(50)), (ardupilot(100), px4(400))]
+    {
+        let mut encoder = encoder(Protocol::Vectornav, &Setup { peer: before, ..setup(&plan, None) });
+        let (mut packets, mut seam) = (Vec::new(), 0);
+        let asked = SimTime(1_003_000_000);
+        let _: Result<(), ()> = Player::new(&plan, plan.duration, 64).play(|moment| {
+            if moment.t == asked {
+                encoder.follow(&after, asked);
+                seam = packets.len();
+            }
+            encoder
+                .encode(&Now { t: moment.t, truth: moment.truth, readings: moment.readings }, &mut packets);
+            Ok(())
+        });
+        let times = |packets: &[Packet], len: usize| -> Vec<i64> {
+            packets.iter().filter(|packet| packet.bytes().len() == len).map(|packet| packet.due.0).collect()
+        };
+        let first = |peer: &Peer| if peer.controller == Some(Controller::Ardupilot) { 82 } else { 40 };
+        let old = times(&packets[..seam], first(&before));
+        let new = times(&packets[seam..], first(&after));
+        let periods = [before, after].map(|peer| peer.rate.unwrap().tick(1).0);
+        assert!(old.windows(2).all(|pair| pair[1] - pair[0] == periods[0]));
+        assert!(new.windows(2).all(|pair| pair[1] - pair[0] == periods[1]));
+        let gap = new[0] - old[old.len() - 1];
+        assert!(new[0] >= asked.0 && gap % periods[1] == 0 && gap < periods[0] + periods[1], "{gap}");
+        assert_eq!(
+            times(&packets[seam..], if first(&after) == 82 { 40 } else { 82 }),
+            [0; 0],
+            "nobody else's"
+        );
+        // Asked for again, it changes nothing.
+        let mut again = Vec::new();
+        encoder.follow(&after, plan.duration);
+        encoder.farewell(&at_rest(plan.duration), &mut again);
+        assert_eq!(again[0].bytes().len(), first(&after));
     }
 }
 

@@ -8,6 +8,7 @@ mod frames;
 
 pub use frames::frames;
 
+use super::Controller;
 use crate::geometry::Attitude;
 use crate::time::{Rate, SimTime};
 
@@ -26,6 +27,8 @@ pub enum Said<'a> {
     Restart(String),
     /// A whole message of the other side for a ground station.
     Pass(&'a [u8]),
+    /// It goes on at this speed, baud, once it has what was said before: a serial port follows.
+    Speed(u32),
 }
 
 /// An attitude estimate of the other side.
@@ -59,13 +62,17 @@ pub enum Stage {
     Ready,
 }
 
-/// What the encoder needs to know of the other side after [`Stage::Silent`].
+/// What the encoder has to know of the other side, once the stage is past [`Stage::Silent`]; it may change later.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peer {
     /// The system id to share (MAVLink).
     pub system: Option<u8>,
     /// The sample rate that it requested.
     pub rate: Option<Rate>,
+    /// The rate at which it asked for the packets that go beside them.
+    pub second: Option<Rate>,
+    /// Who it is, by what it asks for.
+    pub controller: Option<Controller>,
 }
 
 /// One end of a conversation. `now` is in ns on one clock; only differences matter.

@@ -3,6 +3,7 @@
 //! A packet goes out on time whether or not a sample is due. A later sample waits for the next packet, and a sensor
 //! without a new sample repeats its last one, like a unit that holds its output registers.
 
+use super::beat::Beat;
 use super::newest::Told;
 use super::{Newest, Packet, Setup};
 use crate::earth::SEA_LEVEL_PRESSURE;
@@ -19,8 +20,9 @@ pub(super) struct Latest {
     newest: Newest,
     /// The sensor whose first sample begins the stream: the gyro, or without one the first sensor.
     carrier: Option<SensorKind>,
-    beat: Ticks,
-    next: u64,
+    /// What the packets carry.
+    pub kinds: Kinds,
+    beat: Beat,
 }
 
 impl Latest {
@@ -33,12 +35,8 @@ impl Latest {
         });
         let wanted = rate(own);
         let beat = Ticks { rate: if wanted == own { clock } else { wanted }, phase };
-        Latest {
-            newest: Newest::new(&setup.options),
-            carrier: carrier.map(|sensor| sensor.kind),
-            beat,
-            next: 0,
-        }
+        let carrier = carrier.map(|sensor| sensor.kind);
+        Latest { newest: Newest::new(&setup.options), carrier, kinds: CARRIED, beat: Beat::new(beat) }
     }
 
     /// Takes the readings due at `t` and appends the packets due up to then; `write` makes the bytes of a packet
@@ -54,15 +52,15 @@ impl Latest {
         let mut send = |latest: &mut Latest, due| {
             if latest.has_begun() {
                 let len = write(due, &latest.newest.told, buffer);
-                out.push(latest.newest.packet(due, CARRIED, &buffer[..len]));
+                out.push(latest.packet(due, latest.kinds, &buffer[..len]));
             }
-            latest.next += 1;
+            latest.beat.step();
         };
-        while let Some(due) = Some(self.due()).filter(|&due| due < t) {
+        while let Some(due) = Some(self.beat.due()).filter(|&due| due < t) {
             send(self, due);
         }
         self.newest.take_in(readings);
-        if self.due() == t {
+        if self.beat.due() == t {
             send(self, t);
         }
     }
@@ -77,12 +75,17 @@ impl Latest {
         self.newest.waiting()
     }
 
-    /// When the next packet is due.
-    fn due(&self) -> SimTime {
-        self.beat.phase + self.beat.rate.tick(self.next)
+    /// Packets at another rate from now on.
+    pub(super) fn change(&mut self, rate: Rate, now: SimTime) {
+        self.beat.change(rate, now);
     }
 
-    /// Whether the sensor that begins the stream has ticked.
+    /// A packet of these bytes that carries what is new of these kinds.
+    pub(super) fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
+        self.newest.packet(due, kinds, bytes)
+    }
+
+    /// Whether the first sample is there, before which there are no packets.
     pub(super) fn has_begun(&self) -> bool {
         self.carrier.is_some_and(|kind| self.newest.told.has(kind))
     }

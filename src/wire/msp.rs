@@ -1,13 +1,15 @@
 //! `msp`: INAV's simulator message, all sensors in one, at most 100 a second.
 //!
-//! Axes are forward, left, up. The field goes out as a direction, scaled so that the place's strength is 20480
-//! counts, with its horizontal part turned to true north: INAV takes the declination as 0. INAV keeps the last
-//! values for ever, so the stream ends with a vehicle that has stopped.
+//! Axes are forward, left, up. The field is sent as its direction, the place's strength as 20480 counts, with its
+//! horizontal part turned to true north: INAV takes the declination as 0. A receiver's fix is in every packet from its
+//! first one on, and marked as new in one. INAV keeps what came last for ever, so the stream ends with a vehicle that
+//! has stopped.
 
 mod dialogue;
+mod position;
 mod reader;
 
-use super::latest::{CARRIED, Latest, pascals};
+use super::latest::{Latest, pascals};
 use super::row::{Row, Shared, any};
 use super::{AtEnd, Encoder, Now, Packet, Setup, stopped};
 use crate::earth::{STANDARD_GRAVITY, declination};
@@ -15,6 +17,7 @@ use crate::geometry::{Body, Nav, Vector};
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::Rate;
+use position::Position;
 use ratetable_protocols::msp::{self, Message, simulator};
 
 pub(super) static ROW: Row = Row {
@@ -47,6 +50,10 @@ pub(super) static ROW: Row = Row {
 /// The most packets a second that an INAV board accepts.
 pub(super) const FASTEST: Rate = Rate::hz(100);
 
+/// What the packets carry.
+const CARRIED: Kinds =
+    Kinds::of(&[SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag, SensorKind::Baro, SensorKind::Gps]);
+
 /// The field's strength in counts.
 const FIELD: f64 = 20480.0;
 /// Counts for one deg/s.
@@ -63,6 +70,7 @@ pub(super) struct Msp {
     latest: Latest,
     /// The present readings, with the field turned.
     turned: Vec<Reading>,
+    position: Position,
     has_mag: bool,
     at_end: AtEnd,
 }
@@ -70,8 +78,11 @@ pub(super) struct Msp {
 impl Msp {
     pub(super) fn new(setup: &Setup<'_>) -> Msp {
         let at_most = |rate: Rate| if rate.as_hz() > FASTEST.as_hz() { FASTEST } else { rate };
+        let mut latest = Latest::new(setup, at_most);
+        latest.kinds = CARRIED;
         Msp {
-            latest: Latest::new(setup, at_most),
+            latest,
+            position: Position::new(setup.sensors),
             turned: Vec::with_capacity(setup.sensors.len()),
             at_end: setup.options.at_end,
             has_mag: setup.sensors.iter().any(|sensor| sensor.kind == SensorKind::Mag),
@@ -91,15 +102,16 @@ impl Encoder for Msp {
         }));
         let strength = now.truth.field.length();
         let mut buffer = [0; msp::MAX_LEN];
-        self.latest.encode(now.t, &self.turned, out, &mut buffer, |_, newest, buffer| {
+        let Msp { latest, turned, position, .. } = self;
+        let mut fix = now.readings.iter().find_map(|reading| Some(reading.position()?.fix));
+        latest.encode(now.t, turned, out, &mut buffer, |due, newest, buffer| {
+            // A packet that is due before now does not know the fix of now.
+            position.take_in(fix.take_if(|_| due == now.t));
             let value = |kind| newest.body(kind).unwrap_or(Vector::ZERO);
-            frame(
-                [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value),
-                strength,
-                pascals(newest),
-                buffer,
-            )
+            let vectors = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value);
+            frame(message(vectors, strength, pascals(newest)), position, buffer)
         });
+        position.take_in(fix);
     }
 
     fn farewell(&mut self, end: &Truth, out: &mut Vec<Packet>) {
@@ -109,7 +121,9 @@ impl Encoder for Msp {
         let [gyro, accel, field] = stopped(end);
         let mag = if self.has_mag { field + to_true_north(end) } else { Vector::ZERO };
         let mut buffer = [0; msp::MAX_LEN];
-        let len = frame([gyro, accel, mag], end.field.length(), pascals(self.latest.newest()), &mut buffer);
+        self.position.stop();
+        let last = message([gyro, accel, mag], end.field.length(), pascals(self.latest.newest()));
+        let len = frame(last, &mut self.position, &mut buffer);
         out.push(Packet::new(end.t, Kinds::NONE, &buffer[..len]));
         if self.at_end == AtEnd::Leave {
             // MAX_LEN holds every frame.
@@ -135,10 +149,10 @@ fn to_true_north(truth: &Truth) -> Vector<Body> {
     truth.attitude.inverse().apply(turned - field)
 }
 
-/// The frame of gyro, accel and mag. `strength` is the place's field in µT, `pressure` in Pa.
-fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64, buffer: &mut [u8]) -> usize {
+/// What is said of gyro, accel and mag; `strength` is the place's field in µT, `pressure` in Pa.
+fn message([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64) -> simulator::Repr {
     let field = if strength > 0.0 { FIELD / strength } else { 0.0 };
-    let message = Message::Simulator(simulator::Repr {
+    simulator::Repr {
         version: simulator::VERSION,
         flags: FLAGS,
         accel: counts(accel, ACCEL_SCALE / STANDARD_GRAVITY),
@@ -146,9 +160,14 @@ fn frame([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64, bu
         pressure: libm::round(pressure) as i32,
         mag: counts(mag, field),
         ..simulator::Repr::default()
-    });
+    }
+}
+
+/// The frame of a message and the position that goes with it.
+fn frame(mut message: simulator::Repr, position: &mut Position, buffer: &mut [u8]) -> usize {
+    position.put_into(&mut message);
     // MAX_LEN holds every frame.
-    msp::encode(&message, buffer).unwrap_or(0)
+    msp::encode(&Message::Simulator(message), buffer).unwrap_or(0)
 }
 
 /// Forward, left and up, rounded to counts and clipped to 16 bits.

@@ -1,10 +1,11 @@
 //! The table of protocols: to add one, write its folder, its variant, and its line in `ROWS`.
 
-use super::dialogue::Dialogue;
+use super::dialogue::{Dialogue, Peer};
 use super::row::Row;
 use super::{Controller, Encoder, Now, Options, Packet, Setup, mavlink, mip, mpu, msp, text, vectornav};
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
+use crate::time::SimTime;
 
 /// The format of the packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +17,7 @@ pub enum Protocol {
     Mavlink,
     /// INAV's simulator message in MSPv2 frames.
     Msp,
-    /// Binary outputs of a VN-100, for ArduPilot.
+    /// Binary outputs of a VN-100, for ArduPilot and PX4.
     Vectornav,
     /// MicroStrain inertial packets, for ArduPilot.
     Mip,
@@ -118,6 +119,14 @@ impl Encoder for Picky {
 
     fn waiting(&self) -> ByKind<u64> {
         self.encoder.waiting()
+    }
+
+    fn follows(&self) -> bool {
+        self.encoder.follows()
+    }
+
+    fn follow(&mut self, peer: &Peer, now: SimTime) {
+        self.encoder.follow(peer, now);
     }
 }
 

@@ -626,9 +626,11 @@ fn what_a_protocol_has_no_place_for_is_said_and_not_sent() {
     let said = |protocol| warnings(protocol, &Options::default(), &aided.sensors);
     let mpu = said(Protocol::Mpu);
     assert!(mpu.len() == 2 && mpu[0].contains("no place for baro") && mpu[1].contains("gps"), "{mpu:?}");
-    assert!(said(Protocol::Msp)[0].contains("no place for gps"));
+    let vectornav = said(Protocol::Vectornav);
+    assert!(vectornav.len() == 1 && vectornav[0].contains("no place for gps"), "{vectornav:?}");
     assert!(
-        said(Protocol::Mavlink).is_empty()
+        said(Protocol::Msp).is_empty()
+            && said(Protocol::Mavlink).is_empty()
             && said(Protocol::Csv).is_empty()
             && said(Protocol::Jsonl).is_empty()
     );

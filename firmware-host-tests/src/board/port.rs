@@ -35,6 +35,14 @@ pub trait Port {
     /// # Errors
     /// Those of the link, except that it is full or the other side is gone.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
+
+    /// Goes on at this speed once what was written has gone out, where the link has one.
+    ///
+    /// # Errors
+    /// Those of setting the terminal.
+    fn set_baud(&mut self, _baud: u32) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// A serial port, a pty or a file, by its path; or a connection.
@@ -106,6 +114,15 @@ impl Port for Device {
             Err(Errno::IO | Errno::PIPE | Errno::BADF | Errno::CONNRESET) => Ok(bytes.len()),
             Err(error) => Err(error.into()),
         }
+    }
+
+    fn set_baud(&mut self, baud: u32) -> io::Result<()> {
+        if isatty(&self.fd) {
+            let mut settings = tcgetattr(&self.fd)?;
+            settings.set_speed(baud)?;
+            tcsetattr(&self.fd, OptionalActions::Drain, &settings)?;
+        }
+        Ok(())
     }
 }
 

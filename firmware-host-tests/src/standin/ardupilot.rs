@@ -75,6 +75,8 @@ impl Firmware for Ardupilot {
                 Ok(Packet::Imu(imu)) => rest.feel(&imu, now_us),
                 // The unit's attitude: for who chooses it (AHRS_EKF_TYPE = 11), and not for EKF3 and DCM.
                 Ok(Packet::Ahrs(_)) => rest.record.counts.foreign += 1,
+                // Outputs that it did not ask for.
+                Ok(Packet::Inertial(_) | Packet::Navigation(_)) => rest.record.counts.refused += 1,
                 Err(_) => rest.record.counts.damaged += 1,
             }
         });

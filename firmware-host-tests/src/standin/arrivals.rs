@@ -10,7 +10,7 @@ pub enum Framing {
     Mavlink(Box<mavlink::Decoder>),
     /// INAV's simulator message.
     Msp(Box<msp::Decoder>),
-    /// A VN-100's IMU packets.
+    /// A VN-100's packets with gyro and accelerometer.
     Vectornav(Box<vectornav::Decoder>),
     /// A MicroStrain unit's packets.
     Mip(Box<mip::Decoder>),
@@ -29,7 +29,7 @@ impl Framing {
                 whole |= received.is_ok_and(|received| received.command == msp::simulator::COMMAND);
             }),
             Self::Vectornav(decoder) => decoder.feed(&bytes, |received| {
-                whole |= matches!(received, Ok(vectornav::Packet::Imu(_)));
+                whole |= matches!(received, Ok(vectornav::Packet::Imu(_) | vectornav::Packet::Inertial(_)));
             }),
             Self::Mip(decoder) => decoder.feed(&bytes, |received| whole |= received.is_ok()),
         }

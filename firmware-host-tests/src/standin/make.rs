@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use ratetable_protocols::{mavlink, mip, msp, vectornav};
 
-use super::{Ardupilot, Firmware, Framing, Inav, Mip, Parameters, Px4, Px4Sitl};
+use super::{Ardupilot, Firmware, Framing, Inav, Mip, Parameters, Px4, Px4Sitl, Px4Vectornav};
 use crate::ahrs::Kind;
 
 /// A firmware on a kind of link.
@@ -15,6 +15,8 @@ pub enum Make {
     Px4,
     /// PX4 as a program, in lockstep.
     Px4Sitl,
+    /// PX4 with a VN-100.
+    Px4Vectornav,
     /// ArduPilot with a VN-100.
     Ardupilot,
     /// ArduPilot with a MicroStrain unit.
@@ -34,7 +36,7 @@ pub struct Settings {
     pub parameters: Parameters,
     /// PX4 as a program: samples that it does not answer while it boots.
     pub unanswered: u64,
-    /// ArduPilot: IMU packets a second that it asks a VN-100 for.
+    /// ArduPilot and PX4 with a VN-100: packets of samples a second that they ask it for.
     pub rate_hz: u32,
 }
 
@@ -53,13 +55,15 @@ impl Default for Settings {
 
 impl Make {
     /// Every make.
-    pub const ALL: [Self; 5] = [Self::Px4, Self::Px4Sitl, Self::Ardupilot, Self::ArdupilotMip, Self::Inav];
+    pub const ALL: [Self; 6] =
+        [Self::Px4, Self::Px4Sitl, Self::Px4Vectornav, Self::Ardupilot, Self::ArdupilotMip, Self::Inav];
 
     /// As it is called.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Px4 => "px4",
             Self::Px4Sitl => "px4-sitl",
+            Self::Px4Vectornav => "px4-vectornav",
             Self::Ardupilot => "ardupilot",
             Self::ArdupilotMip => "ardupilot-mip",
             Self::Inav => "inav",
@@ -71,6 +75,7 @@ impl Make {
         match self {
             Self::Px4 => Box::new(Px4::new(settings)),
             Self::Px4Sitl => Box::new(Px4Sitl::new(settings)),
+            Self::Px4Vectornav => Box::new(Px4Vectornav::new(settings)),
             Self::Ardupilot => Box::new(Ardupilot::new(settings)),
             Self::ArdupilotMip => Box::new(Mip::new(settings)),
             Self::Inav => Box::new(Inav::new(settings)),
@@ -81,7 +86,7 @@ impl Make {
     pub fn framing(self) -> Framing {
         match self {
             Self::Px4 | Self::Px4Sitl => Framing::Mavlink(Box::new(mavlink::Decoder::new())),
-            Self::Ardupilot => Framing::Vectornav(Box::new(vectornav::Decoder::new())),
+            Self::Px4Vectornav | Self::Ardupilot => Framing::Vectornav(Box::new(vectornav::Decoder::new())),
             Self::ArdupilotMip => Framing::Mip(Box::new(mip::Decoder::new())),
             Self::Inav => Framing::Msp(Box::new(msp::Decoder::new())),
         }

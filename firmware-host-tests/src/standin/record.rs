@@ -51,17 +51,20 @@ pub struct Counts {
     pub asked: u64,
     /// Answers it got to them.
     pub answers: u64,
+    /// Times that it gave a handshake up and began again.
+    pub restarts: u64,
 }
 
 impl fmt::Display for Counts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { packets, damaged, lost, samples, refused, stale, timeouts, .. } = self;
-        let Self { overflowed, foreign, told, answered, asked, answers, .. } = self;
+        let Self { overflowed, foreign, told, answered, asked, answers, restarts, .. } = self;
         write!(
             f,
             "{packets} packets, {damaged} damaged, {lost} lost, {overflowed} bytes overflowed; samples: {samples} used, \
              {refused} refused, {stale} stale readings, {timeouts} timeouts; attitudes: {told} told, {foreign} of \
              others ignored; {answered} samples answered; {asked} questions, {answers} answers"
-        )
+        )?;
+        if *restarts > 0 { write!(f, ", {restarts} handshakes begun again") } else { Ok(()) }
     }
 }

@@ -1,6 +1,6 @@
 //! Packets and lines out of a stream of bytes, however it is cut up.
 
-use super::{CRC, CRC_LEN, MAX_LEN, Packet, SYNC, ahrs, imu, line};
+use super::{CRC, CRC_LEN, MAX_LEN, Packet, SYNC, ahrs, imu, inertial, line, navigation};
 use crate::bytes;
 use crate::error::Error;
 use crate::scanner::{Format, Scanner, Verdict};
@@ -67,10 +67,29 @@ impl Format for Vectornav {
     }
 }
 
+/// A kind of binary packet: its groups, the bytes of its payload, and how that is read.
+type Binary = (&'static [u8], usize, fn(&[u8]) -> Result<Packet, Error>);
+
+/// Every kind of binary packet.
+const BINARY: [Binary; 4] = [
+    (imu::GROUPS, imu::LEN, |payload| {
+        Ok(Packet::Imu(imu::Repr::parse(&imu::Payload::new_checked(payload)?)))
+    }),
+    (ahrs::GROUPS, ahrs::LEN, |payload| {
+        Ok(Packet::Ahrs(ahrs::Repr::parse(&ahrs::Payload::new_checked(payload)?)))
+    }),
+    (inertial::GROUPS, inertial::LEN, |payload| {
+        Ok(Packet::Inertial(inertial::Repr::parse(&inertial::Payload::new_checked(payload)?)))
+    }),
+    (navigation::GROUPS, navigation::LEN, |payload| {
+        Ok(Packet::Navigation(navigation::Repr::parse(&navigation::Payload::new_checked(payload)?)))
+    }),
+];
+
 /// Judges bytes whose first is [`SYNC`].
 fn binary(held: &[u8]) -> Verdict<Packet> {
     let mut wait = false;
-    for (groups, len) in [(imu::GROUPS, imu::LEN), (ahrs::GROUPS, ahrs::LEN)] {
+    for (groups, len, parse) in BINARY {
         let said = &held[1..held.len().min(1 + groups.len())];
         if !groups.starts_with(said) {
             continue;
@@ -83,17 +102,9 @@ fn binary(held: &[u8]) -> Verdict<Packet> {
         if CRC.checksum(&packet[1..crc_at]) != bytes::be::<u16>(packet, crc_at..crc_at + CRC_LEN) {
             return Verdict::Not(Error::Checksum);
         }
-        return Verdict::Packet(parse(groups, &packet[1 + groups.len()..crc_at]), crc_at + CRC_LEN);
+        return Verdict::Packet(parse(&packet[1 + groups.len()..crc_at]), crc_at + CRC_LEN);
     }
     if wait { Verdict::Wait } else { Verdict::Not(Error::Malformed) }
-}
-
-/// Reads the payload of these groups.
-fn parse(groups: &[u8], payload: &[u8]) -> Result<Packet, Error> {
-    if groups == imu::GROUPS {
-        return Ok(Packet::Imu(imu::Repr::parse(&imu::Payload::new_checked(payload)?)));
-    }
-    Ok(Packet::Ahrs(ahrs::Repr::parse(&ahrs::Payload::new_checked(payload)?)))
 }
 
 #[cfg(test)]
@@ -102,10 +113,19 @@ mod tests {
     use super::line::Line;
     use super::*;
 
-    fn packets() -> [Packet; 3] {
+    fn packets() -> [Packet; 5] {
         let imu = imu::Repr { time_ns: 0x24fa_0001_0701_fa24, pressure: 94.5, ..Default::default() };
         let ahrs = ahrs::Repr { time_ns: 1, xyzw: [0.5, -0.5, 0.5, 0.5], ..Default::default() };
-        [Packet::Imu(imu), Packet::Ahrs(ahrs), Packet::Line(Line::new("VNASY,1").unwrap())]
+        let inertial =
+            inertial::Repr { time_ns: 0xfa06_0100_0006, accel: [0.5, 1.0, 2.0], ..Default::default() };
+        let navigation = navigation::Repr { time_ns: 2, position: [59.9, 30.3, 10.0], ..Default::default() };
+        [
+            Packet::Imu(imu),
+            Packet::Ahrs(ahrs),
+            Packet::Inertial(inertial),
+            Packet::Navigation(navigation),
+            Packet::Line(Line::new("VNASY,1").unwrap()),
+        ]
     }
 
     #[test]

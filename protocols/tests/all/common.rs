@@ -318,6 +318,24 @@ pub fn vectornav_packet(json: &Value) -> vectornav::Packet {
             xyzw: floats(&f["xyzw"]),
             uncertainty: floats(&f["uncertainty"]),
         }),
+        "inertial" => vectornav::Packet::Inertial(vectornav::inertial::Repr {
+            time_ns: f["time_ns"].as_u64().unwrap(),
+            accel: floats(&f["accel"]),
+            gyro: floats(&f["gyro"]),
+        }),
+        "navigation" => vectornav::Packet::Navigation(vectornav::navigation::Repr {
+            time_ns: f["time_ns"].as_u64().unwrap(),
+            temperature: float(&f["temperature"]),
+            pressure: float(&f["pressure"]),
+            mag: floats(&f["mag"]),
+            xyzw: floats(&f["xyzw"]),
+            acceleration: floats(&f["acceleration"]),
+            status: f["status"].as_u64().unwrap() as u16,
+            position: [0, 1, 2].map(|i| f["position"][i].as_f64().unwrap()),
+            velocity: floats(&f["velocity"]),
+            position_uncertainty: float(&f["position_uncertainty"]),
+            velocity_uncertainty: float(&f["velocity_uncertainty"]),
+        }),
         "line" => {
             let text = f["text"].as_str().unwrap();
             vectornav::Packet::Line(vectornav::line::Line::new(text).unwrap())

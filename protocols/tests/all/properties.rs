@@ -62,7 +62,7 @@ fn payload(direction: msp::Direction, command: u16, len: usize) -> impl Strategy
 }
 
 fn any_vectornav() -> impl Strategy<Value = vectornav::Packet> {
-    use vectornav::{Packet, ahrs, imu, line::Line};
+    use vectornav::{Packet, ahrs, imu, inertial, line::Line, navigation};
     let three = any::<[f32; 3]>;
     prop_oneof![
         (any::<u64>(), three(), three(), three(), three(), three(), any::<[f32; 2]>()).prop_map(
@@ -78,6 +78,33 @@ fn any_vectornav() -> impl Strategy<Value = vectornav::Packet> {
                 uncertainty
             })
         ),
+        (any::<u64>(), three(), three())
+            .prop_map(|(time_ns, accel, gyro)| Packet::Inertial(inertial::Repr { time_ns, accel, gyro })),
+        (
+            any::<(u64, u16)>(),
+            three(),
+            any::<[f32; 4]>(),
+            three(),
+            any::<[f64; 3]>(),
+            three(),
+            any::<[f32; 4]>()
+        )
+            .prop_map(|((time_ns, status), mag, xyzw, acceleration, position, velocity, rest)| {
+                let [temperature, pressure, position_uncertainty, velocity_uncertainty] = rest;
+                Packet::Navigation(navigation::Repr {
+                    time_ns,
+                    temperature,
+                    pressure,
+                    mag,
+                    xyzw,
+                    acceleration,
+                    status,
+                    position,
+                    velocity,
+                    position_uncertainty,
+                    velocity_uncertainty,
+                })
+            }),
         "[ -#%-)+-~]{0,96}".prop_map(|text| Packet::Line(Line::new(&text).unwrap())),
     ]
 }

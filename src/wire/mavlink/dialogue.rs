@@ -76,7 +76,7 @@ impl Mavlink {
         let way = match controller {
             Some(Controller::Px4) => Way::Hitl(Box::default()),
             Some(Controller::Px4Sitl) => Way::Sitl { took: false },
-            Some(Controller::Ardupilot | Controller::Inav) | None => Way::Any,
+            Some(Controller::Px4Vectornav | Controller::Ardupilot | Controller::Inav) | None => Way::Any,
         };
         Mavlink {
             decoder: Decoder::new(),

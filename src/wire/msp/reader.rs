@@ -1,5 +1,5 @@
-//! `msp`: the simulator message to readings, a sample of each sensor in every packet, new or held. It carries no
-//! time, and only the direction of the field, so that sample has no value.
+//! `msp`: the simulator message back to readings, a sample of each sensor in every packet, new or held. It says no
+//! time, and of the field only the direction, so that one has no value; nor has a fix, which is a sample where it is new.
 
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::{Body, Vector};
@@ -48,6 +48,9 @@ fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut dyn F
     // A field of exactly zero means that there is no magnetometer.
     if seen.mag != simulator::Repr::default().mag {
         sample(SensorKind::Mag, None);
+    }
+    if seen.flags & simulator::NEW_POSITION != 0 {
+        sample(SensorKind::Gps, None);
     }
 }
 

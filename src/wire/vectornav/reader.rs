@@ -1,4 +1,4 @@
-//! `vectornav`: IMU packets to readings, a sample of each sensor in every packet, new or held.
+//! `vectornav`: packets back to readings, a sample of each sensor that a packet carries, new or held.
 
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
@@ -27,16 +27,20 @@ impl samples::Reader for Reader {
 fn take(received: Result<Packet, Error>, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
     let Ok(packet) = received else { return counts.refuse() };
     counts.packets += 1;
-    let Packet::Imu(seen) = packet else { return counts.foreign(packet.name()) };
-    let t = i64::try_from(seen.time_ns).ok().map(SimTime);
-    let mut sample = |kind, values: [f32; 3], unit: f64| {
+    let (time_ns, [gyro, accel, mag]) = match packet {
+        Packet::Imu(seen) => (seen.time_ns, [Some(seen.gyro), Some(seen.accel), Some(seen.mag)]),
+        Packet::Inertial(seen) => (seen.time_ns, [Some(seen.gyro), Some(seen.accel), None]),
+        Packet::Navigation(seen) => (seen.time_ns, [None, None, Some(seen.mag)]),
+        Packet::Ahrs(_) | Packet::Line(_) => return counts.foreign(packet.name()),
+    };
+    let t = i64::try_from(time_ns).ok().map(SimTime);
+    let mut sample = |kind, values: Option<[f32; 3]>, unit: f64| {
+        let Some(values) = values else { return };
         let value = Sensed::triad(values, unit);
         each(Sample { kind, source: Source::only("vectornav"), t, value, packet: Carrier::default() });
     };
-    sample(SensorKind::Gyro, seen.gyro, 1.0);
-    sample(SensorKind::Accel, seen.accel, 1.0);
-    // A field of exactly zero means that there is no magnetometer.
-    if seen.mag != [0.0; 3] {
-        sample(SensorKind::Mag, seen.mag, MICROTESLA_A_GAUSS);
-    }
+    sample(SensorKind::Gyro, gyro, 1.0);
+    sample(SensorKind::Accel, accel, 1.0);
+    // A field of exactly nothing is a magnetometer that is not there.
+    sample(SensorKind::Mag, mag.filter(|&mag| mag != [0.0; 3]), MICROTESLA_A_GAUSS);
 }

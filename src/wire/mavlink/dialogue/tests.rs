@@ -58,6 +58,7 @@ impl Word {
             Said::Notice(notice) => Word::Notice(notice.clone()),
             Said::Restart(notice) => Word::Restart(notice.clone()),
             Said::Pass(bytes) => Word::Pass(bytes.to_vec()),
+            Said::Speed(baud) => panic!("nothing over MAVLink sets {baud} baud"),
         }
     }
 }

@@ -15,7 +15,7 @@ fn plan(case: &Case, duration: &str) -> Plan {
 
 fn play(case: &Case, duration: &str, alter: impl FnOnce(Stream, u64) -> Stream) -> (Plan, Told) {
     let plan = plan(case, duration);
-    let told = converse(case, &plan, &settings(&plan), alter);
+    let told = converse(case, &plan, &settings(case, &plan), alter);
     (plan, told)
 }
 
@@ -58,7 +58,8 @@ fn a_flipped_bit_costs_its_packet_and_is_counted() {
             let damage = |(k, (at, mut packet)): (usize, (u64, Vec<u8>))| {
                 // In the payload, so that no start or length is hidden.
                 if at > rest_us && k % 20 == 7 && has_samples(case.make, &packet) {
-                    packet[20 + k % 30] ^= 1 << (k % 8);
+                    let room = packet.len() - 2;
+                    packet[20 + k % 30.min(room - 20)] ^= 1 << (k % 8);
                     hurt += 1;
                 }
                 (at, packet)

@@ -26,6 +26,17 @@ pub fn doctor(make: Make, packet: &[u8], change: &mut dyn FnMut(&mut Vectors)) -
                 changed = Some(bytes[..len].to_vec());
             }
         }),
+        Make::Px4Vectornav => vectornav::Decoder::new().feed(packet, |received| match received {
+            Ok(vectornav::Packet::Inertial(mut it)) => {
+                floats([&mut it.gyro, &mut it.accel, &mut [0.0; 3]]);
+                changed = Some(encoded(&vectornav::Packet::Inertial(it)));
+            }
+            Ok(vectornav::Packet::Navigation(mut it)) => {
+                floats([&mut [0.0; 3], &mut [0.0; 3], &mut it.mag]);
+                changed = Some(encoded(&vectornav::Packet::Navigation(it)));
+            }
+            _ => {}
+        }),
         Make::Ardupilot => vectornav::Decoder::new().feed(packet, |received| {
             if let Ok(vectornav::Packet::Imu(mut it)) = received {
                 floats([&mut it.gyro, &mut it.accel, &mut it.mag]);
@@ -53,11 +64,11 @@ pub fn doctor(make: Make, packet: &[u8], change: &mut dyn FnMut(&mut Vectors)) -
     changed.unwrap_or_else(|| packet.to_vec())
 }
 
-/// Whether a packet has samples.
+/// Whether a packet has samples of the gyro: one of PX4's with groups 36 has the field alone.
 pub fn has_samples(make: Make, packet: &[u8]) -> bool {
     let mut has = false;
     doctor(make, packet, &mut |_| has = true);
-    has
+    has && !(make == Make::Px4Vectornav && packet.get(1) == Some(&0x36))
 }
 
 /// A simulator message changed; `None` of any other.

@@ -29,6 +29,20 @@ fn lying_vectornav(stream: Stream) -> Stream {
     stream.into_iter().map(|(at, packet)| (at, lie(packet))).collect()
 }
 
+/// Navigation packets of a stream with an attitude and a position far off, tracked or not.
+fn lying_navigation(stream: Stream) -> Stream {
+    let lie = |packet: Vec<u8>| {
+        let mut told = None;
+        vectornav::Decoder::new().feed(&packet, |received| told = received.ok());
+        let Some(vectornav::Packet::Navigation(mut it)) = told else { return packet };
+        it.xyzw = [0.5; 4];
+        it.acceleration = [9.0, -9.0, 9.0];
+        (it.status, it.position, it.velocity) = (2, [10.0, 20.0, 3000.0], [50.0; 3]);
+        encoded(&vectornav::Packet::Navigation(it))
+    };
+    stream.into_iter().map(|(at, packet)| (at, lie(packet))).collect()
+}
+
 /// A stream with a false state told beside every fifth packet.
 fn lying_mavlink(stream: Stream) -> Stream {
     let mut with = Vec::new();
@@ -61,7 +75,8 @@ const FLAGS: u8 =
 
 #[test]
 fn a_false_attitude_beside_the_samples_changes_no_estimate() {
-    let lies: [(Make, Lie); 4] = [
+    let lies: [(Make, Lie); 5] = [
+        (Make::Px4Vectornav, lying_navigation),
         (Make::Ardupilot, lying_vectornav),
         (Make::Px4, lying_mavlink),
         (Make::Px4Sitl, lying_mavlink),
@@ -70,7 +85,7 @@ fn a_false_attitude_beside_the_samples_changes_no_estimate() {
     for (make, lie) in lies {
         let case = Case::of(make);
         let plan = ratetable::scene::Plan::load("level-then-turn", &set("duration=16 s", case)).unwrap();
-        let settings = settings(&plan);
+        let settings = settings(case, &plan);
         let honest = converse(case, &plan, &settings, |stream, _| stream);
         let lied_to = converse(case, &plan, &settings, |stream, _| lie(stream));
         let foreign = lied_to.record.counts.foreign;
@@ -93,7 +108,7 @@ fn inav_believes_the_simulators_attitude_if_it_is_told_to() {
     let case = Case::of(Make::Inav);
     let plan = ratetable::scene::Plan::load("level-then-turn", &set("duration=2 s", case)).unwrap();
     let without = FLAGS & !msp::simulator::OWN_ESTIMATE;
-    let told = converse(case, &plan, &settings(&plan), |stream, _| lying_msp(stream, without));
+    let told = converse(case, &plan, &settings(case, &plan), |stream, _| lying_msp(stream, without));
     let (rms, _) = exact_deg(&plan, &told.record, told.scene_us);
     assert!(rms > 90.0, "{rms}");
 }
@@ -115,7 +130,7 @@ fn wrong_readings_do_not_pass() {
         // As far as the end of the turn to the right.
         let plan = ratetable::scene::Plan::load("level-then-turn", &set("duration=30 s", case)).unwrap();
         for (what, wrong) in WRONG {
-            let told = converse(case, &plan, &settings(&plan), |stream, _| {
+            let told = converse(case, &plan, &settings(case, &plan), |stream, _| {
                 let all = stream.into_iter();
                 all.map(|(at, packet)| (at, doctor(case.make, &packet, &mut |v| wrong(v)))).collect()
             });
@@ -135,7 +150,7 @@ fn wrong_readings_do_not_pass() {
 fn packets_with_another_checksum_seed_are_all_refused() {
     for case in &CASES {
         let plan = ratetable::scene::Plan::load("level-then-turn", &set("duration=1 s", case)).unwrap();
-        let told = converse(case, &plan, &settings(&plan), |stream, _| {
+        let told = converse(case, &plan, &settings(case, &plan), |stream, _| {
             let reseeded = stream.into_iter().map(|(at, mut packet)| {
                 if let Some(last) = packet.last_mut() {
                     *last ^= 0x5a;

@@ -37,9 +37,16 @@ pub struct Case {
 const SCENE_HZ: u64 = 4_000;
 
 /// Every stand-in with the target that is made for it; a MicroStrain unit has none.
-pub const CASES: [Case; 5] = [
+pub const CASES: [Case; 6] = [
     Case { make: Make::Px4, to: "px4@pty", sets: &[], period_us: SCENE_HZ, rest_s: 6 },
     Case { make: Make::Px4Sitl, to: "px4-sitl@tcpin:0", sets: &[], period_us: SCENE_HZ, rest_s: 2 },
+    Case {
+        make: Make::Px4Vectornav,
+        to: "px4-vectornav@pty",
+        sets: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
+        period_us: 5_000,
+        rest_s: 5,
+    },
     Case {
         make: Make::Ardupilot,
         to: "ardupilot@pty",
@@ -68,9 +75,13 @@ impl Case {
     }
 }
 
-/// What a firmware is told before it starts.
-pub fn settings(plan: &Plan) -> Settings {
-    Settings { declination_rad: declination(plan.trajectory.field()), ..Settings::default() }
+/// What a case's firmware is told before it starts: it asks for as many samples as the case has.
+pub fn settings(case: &Case, plan: &Plan) -> Settings {
+    Settings {
+        declination_rad: declination(plan.trajectory.field()),
+        rate_hz: (1_000_000 / case.period_us) as u32,
+        ..Settings::default()
+    }
 }
 
 /// The packets of a rest and then of the scene.
@@ -137,7 +148,7 @@ impl Table {
             Said::Estimate(estimate) => answers.push((estimate, now_us)),
             Said::Reply(bytes) => to_firmware.extend_from_slice(bytes),
             Said::Notice(notice) => notices.push(notice),
-            Said::Took | Said::Pass(_) => {}
+            Said::Took | Said::Pass(_) | Said::Speed(_) => {}
         };
         dialogue.hear(&out, now, &mut say);
         if now_us.is_multiple_of(10_000) {
@@ -206,7 +217,7 @@ pub fn converse(
 /// [`converse`] with the stream as it is.
 pub fn converse_well(case: &Case) -> (Arc<Plan>, Told) {
     let plan = case.plan();
-    let told = converse(case, &plan, &settings(&plan), |stream, _| stream);
+    let told = converse(case, &plan, &settings(case, &plan), |stream, _| stream);
     (plan, told)
 }
 
