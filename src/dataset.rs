@@ -47,7 +47,7 @@ pub use figures::{Figure, Figures, Series};
 pub use folder::{Folder, Sink};
 pub use format::{Format, Open, Writer, Written};
 pub use formats::{FEATURES, FORMATS};
-pub use listed::Holds;
+pub use listed::{Holds, is_recording};
 pub use manifest::FileEntry;
 pub use reference::{Errors, Quality};
 pub use run::Run;

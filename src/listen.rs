@@ -15,11 +15,13 @@
 //! assert_eq!((meter.counts().packets, meter.counts().damaged), (11, 0));
 //! ```
 
+mod asking;
 mod live;
 mod meter;
 mod pace;
 mod stream;
 
+pub use asking::Told;
 pub use live::listen;
 pub use meter::Meter;
 pub use stream::Stream;
@@ -40,6 +42,8 @@ pub struct Job {
     pub span: Option<Duration>,
     /// Timeout for the first packet; zero waits without end.
     pub wait: Duration,
+    /// Whether to ask a controller for its attitude, as a ground station does.
+    pub attitude: bool,
 }
 
 /// An event while listening.
@@ -74,6 +78,8 @@ pub struct Heard {
     pub interrupted: bool,
     /// Everything counted.
     pub meter: Meter,
+    /// The attitude that a controller told, where it was asked.
+    pub told: Vec<Told>,
 }
 
 /// Why the measurement failed.

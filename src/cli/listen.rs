@@ -11,9 +11,12 @@ use crate::report::{HeardLink, HeardReport, HeardSensor, Host, Limit, number};
 use crate::scene::Destination;
 use crate::sensor::SensorKind;
 use crate::time::SimTime;
-use std::path::PathBuf;
+use crate::wire::Protocol;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+/// The files of a recording: the attitude body to north-east-down by the controller's own clock, and the report.
+const RECORDED: [&str; 2] = ["estimate.csv", "report.json"];
 /// The files of the output folder.
 const FILES: [&str; 2] = ["report.json", "intervals.svg"];
 
@@ -34,6 +37,12 @@ pub struct Arguments {
     /// Write the report and a chart of the intervals into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Ask the controller for its attitude, as a ground station does (mavlink)
+    #[arg(long, requires = "record")]
+    attitude: bool,
+    /// Write the attitude that it tells into this folder, for `ratetable score`
+    #[arg(long, value_name = "DIR", requires = "attitude", conflicts_with = "out")]
+    record: Option<PathBuf>,
     /// Replace the output folder if there is one
     #[arg(long)]
     force: bool,
@@ -45,8 +54,17 @@ pub struct Arguments {
 pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let shape = serde_json::to_value(shape(&arguments.from))?;
     arguments.limit.iter().try_for_each(|limit| limit.check(&shape))?;
+    if arguments.attitude && arguments.from.protocol != Protocol::Mavlink {
+        return Err(Refusal(format!(
+            "--attitude asks over MAVLink, not over `{}`: listen to the controller's telemetry, such as mavlink@tcpout:127.0.0.1:5760",
+            arguments.from.protocol.name()
+        )));
+    }
     if let Some(dir) = &arguments.out {
         dataset::may_write(dir, arguments.force, Holds::Listen, &FILES.map(String::from))?;
+    }
+    if let Some(dir) = &arguments.record {
+        dataset::may_write(dir, arguments.force, Holds::Listen, &RECORDED.map(String::from))?;
     }
     let span = arguments.span.filter(|span| *span != SimTime::FOREVER);
     let job = Job {
@@ -54,6 +72,7 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
         address: arguments.from.address.clone(),
         span: span.map(|span| Duration::from_nanos(span.0.unsigned_abs())),
         wait: arguments.wait,
+        attitude: arguments.attitude,
     };
     // Asked before: a pty is gone when its sender is.
     let baud = match &arguments.from.address {
@@ -72,6 +91,9 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
         dataset::put_all(dir, arguments.force, Holds::Listen, &files)?;
         tell(&format!("{}: written", dir.display()));
     }
+    if let Some(dir) = &arguments.record {
+        record(dir, arguments.force, &heard, &report)?;
+    }
     if arguments.json {
         say(&(serde_json::to_string_pretty(&report)? + "\n"))?;
     }
@@ -87,6 +109,34 @@ fn hear(job: &Job, end: SimTime) -> Result<Heard, Refusal> {
     });
     bar.clear();
     Ok(heard?)
+}
+
+/// Writes what a controller told of its attitude, in its own time.
+///
+/// # Errors
+/// It told none, or the folder cannot be written.
+fn record(dir: &Path, force: bool, heard: &Heard, report: &HeardReport) -> Result<(), Refusal> {
+    if heard.told.is_empty() {
+        return Err(Refusal(format!(
+            "{} told no attitude: ATTITUDE and ATTITUDE_QUATERNION were asked for and neither came; does an autopilot beat on this link?",
+            heard.name
+        )));
+    }
+    let mut csv = String::from("t_ns,qw,qx,qy,qz\n");
+    for (t, attitude) in &heard.told {
+        let q = attitude.q;
+        csv += &format!("{t},{},{},{},{}\n", q.w, q.x, q.y, q.z);
+    }
+    let [estimate, json] = RECORDED;
+    let files =
+        [(estimate, csv.into_bytes()), (json, (serde_json::to_string_pretty(report)? + "\n").into_bytes())];
+    dataset::put_all(dir, force, Holds::Listen, &files)?;
+    tell(&format!(
+        "{}: {} attitudes; `ratetable score TRUTH {0}` judges them",
+        dir.display(),
+        heard.told.len()
+    ));
+    Ok(())
 }
 
 /// A report with every field that a stream can have: limits are checked against it before anything is opened.

@@ -91,6 +91,11 @@ pub(super) fn of_files(workshop: &Path, target: &Path, holds: Holds) -> Result<S
     Ok(text.map_err(DatasetError::io("write", Path::new(MANIFEST)))? + "\n")
 }
 
+/// Whether a folder of ours holds a stream that was listened to: its attitudes are body to north-east-down.
+pub fn is_recording(folder: &Path) -> bool {
+    holds(folder).as_deref() == Some(Holds::Listen.name())
+}
+
 /// What the manifest of a folder of ours says it holds; nothing without a manifest of ours.
 pub(super) fn holds(folder: &Path) -> Option<String> {
     let json = read_json(folder).filter(is_ours)?;

@@ -1,5 +1,6 @@
 //! Reads a link into the meter until the sender leaves, the time is over or the user stops it.
 
+use super::asking::Asking;
 use super::{Event, Heard, Job, ListenError, Meter, Progress};
 use crate::clock::{Clock, WallClock};
 use crate::interrupt::Interrupt;
@@ -13,6 +14,8 @@ use tokio::time::{Instant, MissedTickBehavior, interval, sleep_until};
 const PROGRESS: Duration = Duration::from_millis(200);
 /// Time between two greetings, and the window of the displayed rates.
 const SECOND: Duration = Duration::from_secs(1);
+/// Time between two looks at what to ask for.
+const QUESTIONS: Duration = Duration::from_millis(10);
 
 /// Listens to a link and reports events to `on`.
 ///
@@ -37,11 +40,14 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
                 right: "listen to a port, a pty, a socket or a file",
             });
         };
-        // Only a UDP sender that waits for a first datagram gets a greeting; nothing is sent on other links.
-        let greeted = matches!(job.address, Address::UdpOut(_)).then(|| link.sender());
+        // A UDP sender that waits for a first datagram gets a greeting, and so does a controller that is asked for its
+        // attitude. Nothing is sent to others.
+        let greets = job.attitude || matches!(job.address, Address::UdpOut(_));
+        let greeted = greets.then(|| link.sender());
+        let asking = job.attitude.then(|| Asking::new(job.protocol, link.sender())).flatten();
         let meter = if live { Meter::new(job.protocol) } else { Meter::recorded(job.protocol) };
         let clock = WallClock::start();
-        let ear = Ear { job, name, live, link, receiver, greeted, meter, clock };
+        let ear = Ear { job, name, live, link, receiver, greeted, asking, meter, clock };
         ear.hear(&mut signals, on).await
     })
 }
@@ -53,6 +59,7 @@ struct Ear<'a> {
     link: Link,
     receiver: Receiver,
     greeted: Option<Sender>,
+    asking: Option<Asking>,
     meter: Meter,
     clock: WallClock,
 }
@@ -68,6 +75,7 @@ impl Ear<'_> {
         let mut ticks = interval(PROGRESS);
         ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut greetings = interval(SECOND);
+        let mut questions = interval(QUESTIONS);
         let (mut greeting, mut recent, mut bytes) = (0u8, Recent::default(), 0);
         let mut buffer = BytesMut::with_capacity(65_536);
         loop {
@@ -80,6 +88,8 @@ impl Ear<'_> {
                     }
                     first.get_or_insert_with(Instant::now);
                     self.meter.arrived(&buffer, self.live.then_some(now));
+                    let notices = self.asking.as_mut().map(|asking| asking.hear(&buffer, now));
+                    notices.into_iter().flatten().for_each(|notice| on(Event::Notice(notice)));
                     buffer.clear();
                 }
                 _ = ticks.tick() => {
@@ -95,6 +105,11 @@ impl Ear<'_> {
                     self.greet(greeting);
                     greeting = greeting.wrapping_add(1);
                 }
+                _ = questions.tick(), if self.asking.is_some() => {
+                    let now = self.clock.now();
+                    let notices = self.asking.as_mut().map(|asking| asking.tick(now));
+                    notices.into_iter().flatten().for_each(|notice| on(Event::Notice(notice)));
+                }
                 () = signals.recv() => {
                     interrupted = true;
                     break;
@@ -109,7 +124,8 @@ impl Ear<'_> {
         if self.meter.counts().packets == 0 && !interrupted {
             return Err(self.nothing(None));
         }
-        Ok(Heard { name: self.name, interrupted, meter: self.meter })
+        let told = self.asking.map_or(Vec::new(), Asking::into_told);
+        Ok(Heard { name: self.name, interrupted, meter: self.meter, told })
     }
 
     /// Whether the writer of our pty has left and everything is read; the end that we hold does not show it.

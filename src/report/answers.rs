@@ -19,6 +19,8 @@ pub struct AnswersReport {
     pub silences: u64,
     /// How long these silences were in all, s of wall time.
     pub silent_s: f64,
+    /// The longest time without an answer, s of wall time.
+    pub silent_longest_s: f64,
     /// How often the other side restarted.
     pub restarts: u64,
     /// Scene time of its last answer, s, where it was silent from then to the end of the run.

@@ -26,6 +26,8 @@ pub(super) struct Answers {
     gaps: Times,
     silences: u64,
     silent: i64,
+    /// The longest gap, silences included, ns.
+    longest: i64,
     pub restarts: u64,
     /// When the last one came, ns, and the scene time then.
     last: Option<(i64, SimTime)>,
@@ -43,6 +45,9 @@ impl Answers {
         self.last = Some((now, t.unwrap_or_default()));
         if t.is_some() {
             self.received += 1;
+            if self.received > 1 {
+                self.longest = self.longest.max(gap.unwrap_or_default());
+            }
             match gap {
                 Some(gap) if was_silent => self.count_silence(gap),
                 Some(gap) if self.received > 1 => self.gaps.record(gap),
@@ -86,6 +91,7 @@ impl Answers {
             gap_us: self.gaps.spread(),
             silences: self.silences + u64::from(stopped.is_some()),
             silent_s: (self.silent + stopped.map_or(0, |(silent, _)| silent)) as f64 * 1e-9,
+            silent_longest_s: self.longest.max(stopped.map_or(0, |(silent, _)| silent)) as f64 * 1e-9,
             restarts: self.restarts,
             stopped_at_s: stopped.map(|(_, (_, t))| t.seconds()),
         })
@@ -176,7 +182,7 @@ mod tests {
         }
         let report = answers.report(Some(1000), 10 * NANOS, 10 * NANOS).unwrap();
         assert_eq!((report.received, report.silences, report.stopped_at_s), (600, 1, None));
-        assert!((report.silent_s - 4.01).abs() < 1e-9);
+        assert!((report.silent_s - 4.01).abs() < 1e-9 && report.silent_longest_s == report.silent_s);
         assert!(report.gap_us.unwrap().max < 10_100.0, "the silence is no gap");
     }
 

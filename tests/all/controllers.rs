@@ -518,3 +518,81 @@ fn a_controller_that_says_nothing_or_nothing_that_is_understood_is_told_from_one
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(said(&output).contains("is not ready after"), "{}", said(&output));
 }
+
+#[test]
+fn a_controllers_attitude_is_asked_for_and_recorded_for_score() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let from = format!("mavlink@tcpout:{}", listener.local_addr().unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record");
+    let child = Command::new(env!("CARGO_BIN_EXE_ratetable"))
+        .args(["listen", &from, "--attitude", "--record"])
+        .arg(&record)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let (mut stream, _) = listener.accept().unwrap();
+    let mut decoder = mavlink::Decoder::new();
+    stream.write_all(&beat()).unwrap();
+    let mut asked = Vec::new();
+    while asked.is_empty() {
+        let bytes = next(&mut stream).expect("a question");
+        decoder.feed(&bytes, |received| {
+            if let Some(Message::CommandLong(command)) = received.unwrap().message {
+                asked.push((command.command, command.params[0]));
+            }
+        });
+    }
+    assert_eq!(asked[0], (511, 31.0), "SET_MESSAGE_INTERVAL of ATTITUDE_QUATERNION");
+    // A quarter turn to the right about the vertical, told from 100 s after its boot on.
+    let half = std::f32::consts::FRAC_PI_8;
+    for k in 0..50 {
+        let q = [half.cos(), 0.0, 0.0, half.sin()];
+        let told = attitude_quaternion::Repr { time_boot_ms: 100_000 + 20 * k, q, ..Default::default() };
+        stream.write_all(&packet(&Message::AttitudeQuaternion(told))).unwrap();
+    }
+    drop(stream);
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("50 attitudes; `ratetable score TRUTH"), "{}", said(&output));
+    let csv = std::fs::read_to_string(record.join("estimate.csv")).unwrap();
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("t_ns,qw,qx,qy,qz"));
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert_eq!((rows.len(), rows[49][0]), (50, 100.98e9));
+    assert!(
+        (rows[7][1] - f64::from(half.cos())).abs() < 1e-6
+            && (rows[7][4] - f64::from(half.sin())).abs() < 1e-6
+    );
+
+    // In a scene written in east-north-up too, it is read as north-east-down.
+    let truth = folder.path().join("truth");
+    let scene = folder.path().join("scene.toml");
+    let turned = "axes = \"enu-flu\"\n[start]\nattitude = \"[0, 0, 45] deg\"\n[[motion]]\nkind = \"hold\"\nduration = \"200 s\"\n[gyro]\nrate = \"10 Hz\"\n";
+    std::fs::write(&scene, turned).unwrap();
+    let generated = Command::new(env!("CARGO_BIN_EXE_ratetable"))
+        .arg("generate")
+        .arg(&scene)
+        .arg("--out")
+        .arg(&truth)
+        .output();
+    assert!(generated.unwrap().status.success());
+    let score = Command::new(env!("CARGO_BIN_EXE_ratetable"))
+        .arg("score")
+        .args([&truth, &record])
+        .arg("--json")
+        .output();
+    let score: Value = serde_json::from_slice(&score.unwrap().stdout).unwrap();
+    assert!(score["estimates"][0]["rms_deg"].as_f64().is_none_or(|rms| rms < 1e-3), "{score}");
+}
+
+#[test]
+fn an_attitude_can_be_asked_for_over_mavlink_alone() {
+    let output = Command::new(env!("CARGO_BIN_EXE_ratetable"))
+        .args(["listen", "mpu@pty", "--attitude", "--record", "x"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("--attitude asks over MAVLink, not over `mpu`"), "{}", said(&output));
+}

@@ -3,7 +3,7 @@
 use super::units::{self, Unit};
 use super::{Arguments, Estimates, Refusal, Source, hints};
 use crate::cli::progress::Bar;
-use crate::dataset::read as stored;
+use crate::dataset::{self, read as stored};
 use crate::filters::{self, FILTERS, FilterKind, SIX, Stream, Streams};
 use crate::geometry::Axes;
 use crate::scene::{Plan, nearest};
@@ -144,6 +144,8 @@ fn estimate(name: &str, folder: Option<&Path>, axes: Axes, arguments: &Arguments
             names.join(", ")
         )));
     }
+    // A recording of `listen` is in the program's own axes, whatever the truth's are.
+    let axes = if dataset::is_recording(path) { Axes::NedFrd } else { axes };
     let path = if path.is_dir() { path.join("estimate.csv") } else { path.to_path_buf() };
     let recorded = score::read_as(&path, &reading(arguments, axes))?;
     Ok(Given::File(path, Box::new(recorded)))

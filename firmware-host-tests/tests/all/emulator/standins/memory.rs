@@ -147,7 +147,7 @@ impl Table {
         let mut say = |said: Said<'_>| match said {
             Said::Estimate(estimate) => answers.push((estimate, now_us)),
             Said::Reply(bytes) => to_firmware.extend_from_slice(bytes),
-            Said::Notice(notice) => notices.push(notice),
+            Said::Notice(notice) | Said::Restart(notice) => notices.push(notice),
             Said::Took | Said::Pass(_) | Said::Speed(_) => {}
         };
         dialogue.hear(&out, now, &mut say);
