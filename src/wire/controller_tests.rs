@@ -399,8 +399,11 @@ fn ahrs_packets_carry_the_truth_fifty_times_a_second() {
     }
 }
 
-/// PX4's two outputs, with when they are due.
-fn px4_outputs(packets: &[Packet]) -> (Vec<(SimTime, vn_inertial::Repr)>, Vec<(SimTime, navigation::Repr)>) {
+/// Packets, with when they are due.
+type Due<T> = Vec<(SimTime, T)>;
+
+/// PX4's two outputs.
+fn px4_outputs(packets: &[Packet]) -> (Due<vn_inertial::Repr>, Due<navigation::Repr>) {
     let (mut first, mut second) = (Vec::new(), Vec::new());
     let mut decoder = vn::Decoder::new();
     for packet in packets {
