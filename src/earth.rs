@@ -13,7 +13,9 @@ mod atmosphere;
 mod ellipsoid;
 mod field;
 
-pub use atmosphere::{SEA_LEVEL_PRESSURE, density, indicated_airspeed, pressure, pressure_altitude};
+pub use atmosphere::{
+    SEA_LEVEL_PRESSURE, density, dynamic_pressure, indicated_airspeed, pressure, pressure_altitude,
+};
 pub use field::magnetic_field;
 
 use crate::geometry::{Nav, Vector};

@@ -31,6 +31,7 @@ pub mod attitude;
 mod decoder;
 pub mod fc_variant;
 pub mod simulator;
+pub mod simulator_air;
 pub mod simulator_reply;
 
 pub use decoder::Decoder;
@@ -56,7 +57,7 @@ pub const HEADER_LEN: usize = field::SIZE.end;
 pub const CRC_LEN: usize = 1;
 
 /// Bytes of the longest payload that [`encode`] writes.
-pub const MAX_PAYLOAD_LEN: usize = simulator::LEN;
+pub const MAX_PAYLOAD_LEN: usize = simulator_air::LEN;
 
 /// Bytes of the longest frame that [`encode`] writes.
 pub const MAX_LEN: usize = HEADER_LEN + MAX_PAYLOAD_LEN + CRC_LEN;
@@ -153,6 +154,13 @@ macro_rules! messages {
                 if payload.is_empty() {
                     return Ok(Some(Self::Empty { direction, command }));
                 }
+                // The only command with two lengths.
+                if command == simulator::COMMAND
+                    && direction == simulator::DIRECTION
+                    && let Ok(payload) = simulator_air::Payload::new_checked(payload)
+                {
+                    return Ok(Some(Self::SimulatorAir(simulator_air::Repr::parse(&payload))));
+                }
                 $(if command == $module::COMMAND && direction == $module::DIRECTION {
                     let payload = $module::Payload::new_checked(payload)?;
                     return Ok(Some(Self::$name($module::Repr::parse(&payload))));
@@ -179,6 +187,8 @@ macro_rules! messages {
 messages! {
     /// What the sensors of an emulated vehicle read.
     Simulator(simulator),
+    /// The same with an airspeed.
+    SimulatorAir(simulator_air),
     /// What INAV answers to that.
     SimulatorReply(simulator_reply),
     /// The controller's attitude.

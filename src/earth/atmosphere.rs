@@ -94,6 +94,11 @@ pub fn indicated_airspeed(pressure: f64) -> f64 {
     libm::copysign(libm::sqrt(2.0 * pressure.abs() / SEA_LEVEL_DENSITY), pressure)
 }
 
+/// The dynamic pressure (Pa) at which an instrument shows this airspeed (m/s): `½·ρ₀·v²`, with the sign of v.
+pub fn dynamic_pressure(airspeed: f64) -> f64 {
+    0.5 * SEA_LEVEL_DENSITY * airspeed * airspeed.abs()
+}
+
 /// The geopotential altitude (m) at which the standard atmosphere has this pressure (Pa): an altimeter's reading when
 /// it is set to 1013.25 hPa. 0 or below 0 Pa is taken for the thinnest air there is.
 pub fn pressure_altitude(pressure: f64) -> f64 {

@@ -221,6 +221,77 @@ fn a_fix_is_new_in_one_message_and_held_in_the_others() {
         && (seen.fix, seen.satellites, seen.latitude, seen.velocity) == (0, 0, 0, [0; 3])));
 }
 
+/// Level, facing north, in air that comes from ahead at an indicated 15 m/s: its first message, made by Python's struct.
+const AIRED: &str = "24583c001f203a0002ef00000000000000000000000000000000000000000000000000000000000000000000e803000000000000cd8b010000280000b8ba7edc050099";
+
+/// The airspeed (m/s) of each message, and whether the packet has a sample of the pitot tube.
+fn airspeeds(scene: &str) -> Vec<(Option<f64>, bool)> {
+    let (packets, _) = play(&plan(scene), Protocol::Msp, None);
+    let mut all = Vec::new();
+    let mut decoder = msp::Decoder::new();
+    for packet in &packets {
+        let carries = packet.carries.contains(SensorKind::Airspeed);
+        decoder.feed(packet.bytes(), |received| match received.unwrap().message {
+            Some(Message::SimulatorAir(seen)) => {
+                assert_eq!(
+                    (seen.readings.flags & 0xe0, seen.tail.voltage, seen.tail.more_flags),
+                    (0xe0, 126, 0)
+                );
+                all.push((Some(f64::from(seen.tail.airspeed) / 100.0), carries));
+            }
+            Some(Message::Simulator(seen)) => {
+                assert_eq!(seen.flags & 0xe0, 0);
+                all.push((None, carries));
+            }
+            other => panic!("{other:?}"),
+        });
+    }
+    all
+}
+
+#[test]
+fn msp_says_an_airspeed_as_inavs_plugin_does() {
+    let with = |speed: &str, rate: &str| {
+        format!(
+            "duration = \"1 s\"\n[start]\nvelocity = \"[{speed}, 0, 0] m/s\"\n{EXACT}[airspeed]\nrate = \"{rate}\"\n"
+        )
+    };
+    let (packets, _) = play(&plan(&with("15", "20 Hz")), Protocol::Msp, None);
+    assert_eq!(hex(packets[0].bytes()), AIRED);
+    for (speed, expected) in [("15", 15.0), ("0", 0.0), ("31.07", 31.07), ("-15", 0.0), ("900", 655.35)] {
+        let all = airspeeds(&with(speed, "20 Hz"));
+        assert_eq!(all.len(), 100);
+        for (k, (airspeed, carries)) in all.into_iter().enumerate() {
+            assert_eq!((airspeed, carries), (Some(expected), k % 5 == 0), "{speed} {k}");
+        }
+    }
+    assert_eq!(airspeeds(&format!("duration = \"1 s\"\n{EXACT}")), [(None, false); 100]);
+}
+
+#[test]
+fn what_listens_to_msp_finds_fixes_and_the_pitot_tubes_pressure() {
+    let scene = format!("{FLYING}[airspeed]\nrate = \"20 Hz\"\n").replace("[0, -15, 0.25]", "[0, -20, 0]");
+    let (packets, readings) = play(&plan(&scene), Protocol::Msp, None);
+    let mut samples = samples::Samples::new(Protocol::Msp);
+    let (mut fixes, mut pressures) = (0, Vec::new());
+    for packet in &packets {
+        samples.feed(packet.bytes(), |sample| match sample.kind {
+            SensorKind::Gps => fixes += u32::from(sample.value.is_none()),
+            SensorKind::Airspeed => pressures.push(sample.value.unwrap().pressure().unwrap()),
+            _ => {}
+        });
+    }
+    assert_eq!((fixes, pressures.len(), samples.counts().damaged), (5, 100, 0));
+    let sent = readings
+        .iter()
+        .find_map(|(_, it)| (it.kind == SensorKind::Airspeed).then(|| it.pressure().unwrap().value));
+    // Half a centimetre a second of some twenty metres a second.
+    assert!(
+        pressures.iter().all(|seen| (seen / sent.unwrap() - 1.0).abs() < 2.0 * 0.005 / 19.0),
+        "{pressures:?}"
+    );
+}
+
 #[test]
 fn the_last_message_stands_where_it_is() {
     let plan = plan(FLYING);
@@ -328,8 +399,11 @@ fn ahrs_packets_carry_the_truth_fifty_times_a_second() {
     }
 }
 
-/// PX4's two outputs, with when they are due.
-fn px4_outputs(packets: &[Packet]) -> (Vec<(SimTime, vn_inertial::Repr)>, Vec<(SimTime, navigation::Repr)>) {
+/// Packets, with when they are due.
+type Due<T> = Vec<(SimTime, T)>;
+
+/// PX4's two outputs.
+fn px4_outputs(packets: &[Packet]) -> (Due<vn_inertial::Repr>, Due<navigation::Repr>) {
     let (mut first, mut second) = (Vec::new(), Vec::new());
     let mut decoder = vn::Decoder::new();
     for packet in packets {

@@ -2,9 +2,10 @@
 //!
 //! Axes are forward, left, up. The field is sent as its direction, the place's strength as 20480 counts, with its
 //! horizontal part turned to true north: INAV takes the declination as 0. A receiver's fix is in every packet from its
-//! first one on, and marked as new in one. INAV keeps what came last for ever, so the stream ends with a vehicle that
+//! first one on, and marked as new in one. A pitot tube's airspeed makes every message longer. INAV keeps what came last for ever, so the stream ends with a vehicle that
 //! has stopped.
 
+mod airspeed;
 mod dialogue;
 mod position;
 mod reader;
@@ -51,8 +52,14 @@ pub(super) static ROW: Row = Row {
 pub(super) const FASTEST: Rate = Rate::hz(100);
 
 /// What the packets carry.
-const CARRIED: Kinds =
-    Kinds::of(&[SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag, SensorKind::Baro, SensorKind::Gps]);
+const CARRIED: Kinds = Kinds::of(&[
+    SensorKind::Gyro,
+    SensorKind::Accel,
+    SensorKind::Mag,
+    SensorKind::Baro,
+    SensorKind::Gps,
+    SensorKind::Airspeed,
+]);
 
 /// The field's strength in counts.
 const FIELD: f64 = 20480.0;
@@ -109,7 +116,8 @@ impl Encoder for Msp {
             position.take_in(fix.take_if(|_| due == now.t));
             let value = |kind| newest.body(kind).unwrap_or(Vector::ZERO);
             let vectors = [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].map(value);
-            frame(message(vectors, strength, pascals(newest)), position, buffer)
+            let pitot = newest.pressure(SensorKind::Airspeed);
+            frame(message(vectors, strength, pascals(newest)), position, pitot, buffer)
         });
         position.take_in(fix);
     }
@@ -123,7 +131,8 @@ impl Encoder for Msp {
         let mut buffer = [0; msp::MAX_LEN];
         self.position.stop();
         let last = message([gyro, accel, mag], end.field.length(), pascals(self.latest.newest()));
-        let len = frame(last, &mut self.position, &mut buffer);
+        let pitot = self.latest.newest().pressure(SensorKind::Airspeed).map(|_| 0.0);
+        let len = frame(last, &mut self.position, pitot, &mut buffer);
         out.push(Packet::new(end.t, Kinds::NONE, &buffer[..len]));
         if self.at_end == AtEnd::Leave {
             // MAX_LEN holds every frame.
@@ -163,11 +172,20 @@ fn message([gyro, accel, mag]: [Vector<Body>; 3], strength: f64, pressure: f64) 
     }
 }
 
-/// The frame of a message and the position that goes with it.
-fn frame(mut message: simulator::Repr, position: &mut Position, buffer: &mut [u8]) -> usize {
+/// The frame of a message, the position that goes with it and a pitot tube's pressure, Pa.
+fn frame(
+    mut message: simulator::Repr,
+    position: &mut Position,
+    pitot: Option<f64>,
+    buffer: &mut [u8],
+) -> usize {
     position.put_into(&mut message);
+    let message = match pitot {
+        Some(pressure) => Message::SimulatorAir(airspeed::with(message, pressure)),
+        None => Message::Simulator(message),
+    };
     // MAX_LEN holds every frame.
-    msp::encode(&Message::Simulator(message), buffer).unwrap_or(0)
+    msp::encode(&message, buffer).unwrap_or(0)
 }
 
 /// Forward, left and up, rounded to counts and clipped to 16 bits.

@@ -111,6 +111,9 @@ impl Inav {
         let command = received.command;
         let reply = match (command, received.message) {
             (simulator::COMMAND, Some(Message::Simulator(message))) => self.simulate(message, now_us),
+            (simulator::COMMAND, Some(Message::SimulatorAir(message))) => {
+                self.simulate(message.readings, now_us)
+            }
             (attitude::COMMAND, Some(_)) => {
                 let [roll, pitch, yaw] = self.told();
                 Message::Attitude(attitude::Repr { roll, pitch, yaw: yaw / 10 })

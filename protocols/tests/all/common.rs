@@ -244,27 +244,40 @@ pub fn mavlink_message(json: &Value) -> Message {
     }
 }
 
+/// The readings of a simulator message.
+fn msp_simulator(f: &Value) -> msp::simulator::Repr {
+    msp::simulator::Repr {
+        version: int(&f["version"]),
+        flags: int(&f["flags"]),
+        fix: int(&f["fix"]),
+        satellites: int(&f["satellites"]),
+        latitude: int(&f["latitude"]),
+        longitude: int(&f["longitude"]),
+        altitude: int(&f["altitude"]),
+        ground_speed: int(&f["ground_speed"]),
+        course: int(&f["course"]),
+        velocity: ints(&f["velocity"]),
+        attitude: ints(&f["attitude"]),
+        accel: ints(&f["accel"]),
+        gyro: ints(&f["gyro"]),
+        pressure: int(&f["pressure"]),
+        mag: ints(&f["mag"]),
+    }
+}
+
 /// The `msp` message that a vector describes.
 pub fn msp_message(json: &Value) -> msp::Message {
     let f = &json["fields"];
     match json["message"].as_str().unwrap() {
         "empty" => msp::Message::Empty { direction: msp_direction(json), command: int(&json["command"]) },
-        "simulator" => msp::Message::Simulator(msp::simulator::Repr {
-            version: int(&f["version"]),
-            flags: int(&f["flags"]),
-            fix: int(&f["fix"]),
-            satellites: int(&f["satellites"]),
-            latitude: int(&f["latitude"]),
-            longitude: int(&f["longitude"]),
-            altitude: int(&f["altitude"]),
-            ground_speed: int(&f["ground_speed"]),
-            course: int(&f["course"]),
-            velocity: ints(&f["velocity"]),
-            attitude: ints(&f["attitude"]),
-            accel: ints(&f["accel"]),
-            gyro: ints(&f["gyro"]),
-            pressure: int(&f["pressure"]),
-            mag: ints(&f["mag"]),
+        "simulator" => msp::Message::Simulator(msp_simulator(f)),
+        "simulator_air" => msp::Message::SimulatorAir(msp::simulator_air::Repr {
+            readings: msp_simulator(f),
+            tail: msp::simulator_air::tail::Repr {
+                voltage: int(&f["voltage"]),
+                airspeed: int(&f["airspeed"]),
+                more_flags: int(&f["more_flags"]),
+            },
         }),
         "simulator_reply" => msp::Message::SimulatorReply(msp::simulator_reply::Repr {
             outputs: ints(&f["outputs"]),

@@ -44,11 +44,14 @@ fn any_header() -> impl Strategy<Value = Header> {
 
 /// Any frame, made from any payload.
 fn any_frame() -> impl Strategy<Value = msp::Message> {
-    use msp::{Direction, Message, api_version, attitude, fc_variant, simulator, simulator_reply};
+    use msp::{
+        Direction, Message, api_version, attitude, fc_variant, simulator, simulator_air, simulator_reply,
+    };
     let direction = select(vec![Direction::Request, Direction::Reply, Direction::Refusal]);
     prop_oneof![
         (direction, any::<u16>()).prop_map(|(direction, command)| Message::Empty { direction, command }),
         payload(Direction::Request, simulator::COMMAND, simulator::LEN),
+        payload(Direction::Request, simulator_air::COMMAND, simulator_air::LEN),
         payload(Direction::Reply, simulator_reply::COMMAND, simulator_reply::LEN),
         payload(Direction::Reply, attitude::COMMAND, attitude::LEN),
         payload(Direction::Reply, api_version::COMMAND, api_version::LEN),

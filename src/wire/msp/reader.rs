@@ -4,7 +4,7 @@
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::{Body, Vector};
 use crate::sensor::SensorKind;
-use crate::wire::msp::{ACCEL_SCALE, GYRO_SCALE};
+use crate::wire::msp::{ACCEL_SCALE, GYRO_SCALE, airspeed};
 use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
 use ratetable_protocols::Error;
 use ratetable_protocols::msp::{
@@ -31,26 +31,32 @@ impl samples::Reader for Reader {
 fn take(received: Result<Received, Error>, counts: &mut Counts, each: &mut dyn FnMut(Sample)) {
     let Ok(Received { direction, command, message }) = received else { return counts.refuse() };
     counts.packets += 1;
-    let Some(Message::Simulator(seen)) = message else {
-        let way = match direction {
-            Direction::Request => "request",
-            Direction::Reply => "reply",
-            Direction::Refusal => "refusal",
-        };
-        return counts.foreign(&format!("{way} {command}"));
+    let (seen, pitot) = match message {
+        Some(Message::Simulator(seen)) => (seen, None),
+        Some(Message::SimulatorAir(seen)) => (seen.readings, Some(airspeed::pressure(&seen))),
+        _ => {
+            let way = match direction {
+                Direction::Request => "request",
+                Direction::Reply => "reply",
+                Direction::Refusal => "refusal",
+            };
+            return counts.foreign(&format!("{way} {command}"));
+        }
     };
-    let mut sample = |kind, value: Option<Vector<Body>>| {
-        let value = value.map(Sensed::Body);
+    let mut sample = |kind, value: Option<Sensed>| {
         each(Sample { kind, source: Source::only("msp"), t: None, value, packet: Carrier::default() })
     };
-    sample(SensorKind::Gyro, Some(body(seen.gyro, 1f64.to_radians() / GYRO_SCALE)));
-    sample(SensorKind::Accel, Some(body(seen.accel, STANDARD_GRAVITY / ACCEL_SCALE)));
-    // A field of exactly zero means that there is no magnetometer.
+    sample(SensorKind::Gyro, Some(Sensed::Body(body(seen.gyro, 1f64.to_radians() / GYRO_SCALE))));
+    sample(SensorKind::Accel, Some(Sensed::Body(body(seen.accel, STANDARD_GRAVITY / ACCEL_SCALE))));
+    // A field of exactly nothing is a magnetometer that is not there.
     if seen.mag != simulator::Repr::default().mag {
         sample(SensorKind::Mag, None);
     }
     if seen.flags & simulator::NEW_POSITION != 0 {
         sample(SensorKind::Gps, None);
+    }
+    if let Some(pressure) = pitot {
+        sample(SensorKind::Airspeed, Some(Sensed::Pressure(pressure)));
     }
 }
 
