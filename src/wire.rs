@@ -29,9 +29,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod claim;
 pub mod dialogue;
 mod fault;
 mod faults;
+mod ilabs;
 mod latest;
 mod load;
 mod mavlink;
@@ -46,7 +48,9 @@ pub mod samples;
 mod seconds;
 mod text;
 mod vectornav;
+mod wrap;
 
+pub use claim::Claim;
 pub use fault::{PacketFault, PacketFaultKind};
 pub use faults::{Acts, Faults};
 pub use load::load;
@@ -100,6 +104,8 @@ pub struct Options {
     pub version: Version,
     /// For `mavlink`: what is sent beside HIL_SENSOR.
     pub extras: Extras,
+    /// For `ilabs`: what the unit says of its own attitude.
+    pub claim: Claim,
 }
 
 /// What an encoder needs to know of the scene.

@@ -8,6 +8,7 @@
 mod ardupilot;
 mod arrivals;
 mod hil;
+mod ilabs;
 mod inav;
 mod make;
 mod mip;
@@ -23,6 +24,7 @@ use std::time::Duration;
 
 pub use ardupilot::Ardupilot;
 pub use arrivals::{Clock, Framing};
+pub use ilabs::Ilabs;
 pub use inav::Inav;
 pub use make::{Make, Settings};
 pub use mip::Mip;

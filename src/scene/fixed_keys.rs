@@ -105,6 +105,11 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ),
     (
         "output",
+        "attitude",
+        "for `ilabs`, the attitude told beside the readings: \"level\" (default), which is false once the vehicle moves, or \"truth\"",
+    ),
+    (
+        "output",
         "pace",
         "whether a pty with a baud rate, such as \"mpu@pty,115200\", has the timing of a UART (default true)",
     ),

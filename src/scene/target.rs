@@ -31,7 +31,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub static TARGETS: [Target; 4] = [
+pub static TARGETS: [Target; 6] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
@@ -71,6 +71,35 @@ pub static TARGETS: [Target; 4] = [
         // As many as its default baud rate carries; it asks for its own number of packets.
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
         asks: "nothing: it configures the output at the rate in EAHRS_RATE",
+    },
+    Target {
+        name: "ardupilot-ilabs",
+        about: "ArduPilot, whose external AHRS driver reads ratetable as an Inertial Labs unit: it asks for nothing",
+        protocol: Protocol::Ilabs,
+        controller: Controller::Ardupilot,
+        link: None,
+        baud: Some(230_400),
+        // EKF3 aligns its heading 6.4 s after its boot begins.
+        rest: SimTime(10 * NANOS),
+        most_hz: None,
+        scene: "level-then-turn",
+        // The rate of the real unit: 70 bytes a frame.
+        settings: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
+        asks: "nothing: it only listens",
+    },
+    Target {
+        name: "px4-ilabs",
+        about: "PX4, whose `ilabs` driver reads ratetable as an Inertial Labs unit: its own EKF2 on our samples, without HITL",
+        protocol: Protocol::Ilabs,
+        controller: Controller::Px4,
+        link: None,
+        // The driver has no other speed.
+        baud: Some(921_600),
+        rest: SimTime(10 * NANOS),
+        most_hz: None,
+        scene: "level-then-turn",
+        settings: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
+        asks: "nothing: it only listens",
     },
     Target {
         name: "inav",

@@ -1,13 +1,14 @@
-//! Packets at a rate of their own, each with the newest sample of every sensor: what `msp`, `vectornav` and `mip`
-//! have in common.
+//! Packets at a rate of their own, each with the newest sample of every sensor: what `msp`, `vectornav`, `mip` and
+//! `ilabs` have in common.
 //!
 //! A packet is due on time whether or not a sample is: one that came later waits for the next packet, and a sensor
 //! without a new one is told again as it was, as a unit that holds its output registers does.
 
 use super::newest::Told;
-use super::{Newest, Packet, Setup};
+use super::{Newest, Packet, Setup, stopped};
 use crate::earth::SEA_LEVEL_PRESSURE;
 use crate::geometry::{Body, Vector};
+use crate::motion::Truth;
 use crate::schedule::Ticks;
 use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
@@ -66,6 +67,15 @@ impl Latest {
     /// The newest reading of each sensor.
     pub(super) fn newest(&self) -> &Told {
         &self.newest.told
+    }
+
+    /// The newest readings, and of those of these kinds what a vehicle reads that has stopped as it is.
+    pub(super) fn stopped(&self, truth: &Truth, kinds: Kinds) -> Told {
+        let mut still = self.newest.told;
+        for (kind, value) in SensorKind::TRIADS.into_iter().zip(stopped(truth)) {
+            still.put(kind, kinds.contains(kind).then_some(value));
+        }
+        still
     }
 
     /// Samples of each kind taken in that no packet has carried yet.

@@ -23,8 +23,8 @@ pub struct Sample {
     pub kind: SensorKind,
     /// Which of several sensors of that kind on the link.
     pub source: Source,
-    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text, `vectornav`, `mip`: ns; some
-    /// MAVLink messages: ms). The 32 bits of `mpu` and `mip` go on counting here where they wrap.
+    /// When it was taken by the sender's clock, where the packet says so, in whole µs (text, `vectornav`, `mip`: ns; `ilabs`,
+    /// some MAVLink messages: ms). A clock that begins again (32 bits of µs, a week) goes on counting here.
     pub t: Option<SimTime>,
     /// The reading; `None` where the packet does not say what its counts mean
     /// (`mpu` before its first config packet, raw messages, the field in `msp`) or that they mean nothing (an

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use ratetable_protocols::{mavlink, mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mavlink, mip, msp, vectornav};
 
-use super::{Ardupilot, Firmware, Framing, Inav, Mip, Parameters, Px4, Px4Sitl};
+use super::{Ardupilot, Firmware, Framing, Ilabs, Inav, Mip, Parameters, Px4, Px4Sitl};
 use crate::ahrs::Kind;
 
 /// A firmware on a kind of link.
@@ -19,6 +19,10 @@ pub enum Make {
     Ardupilot,
     /// ArduPilot with a MicroStrain unit.
     ArdupilotMip,
+    /// ArduPilot with an Inertial Labs unit.
+    ArdupilotIlabs,
+    /// PX4 with an Inertial Labs unit.
+    Px4Ilabs,
     /// INAV.
     Inav,
 }
@@ -53,7 +57,15 @@ impl Default for Settings {
 
 impl Make {
     /// Every make.
-    pub const ALL: [Self; 5] = [Self::Px4, Self::Px4Sitl, Self::Ardupilot, Self::ArdupilotMip, Self::Inav];
+    pub const ALL: [Self; 7] = [
+        Self::Px4,
+        Self::Px4Sitl,
+        Self::Ardupilot,
+        Self::ArdupilotMip,
+        Self::ArdupilotIlabs,
+        Self::Px4Ilabs,
+        Self::Inav,
+    ];
 
     /// As it is called.
     pub const fn name(self) -> &'static str {
@@ -62,6 +74,8 @@ impl Make {
             Self::Px4Sitl => "px4-sitl",
             Self::Ardupilot => "ardupilot",
             Self::ArdupilotMip => "ardupilot-mip",
+            Self::ArdupilotIlabs => "ardupilot-ilabs",
+            Self::Px4Ilabs => "px4-ilabs",
             Self::Inav => "inav",
         }
     }
@@ -73,6 +87,8 @@ impl Make {
             Self::Px4Sitl => Box::new(Px4Sitl::new(settings)),
             Self::Ardupilot => Box::new(Ardupilot::new(settings)),
             Self::ArdupilotMip => Box::new(Mip::new(settings)),
+            Self::ArdupilotIlabs => Box::new(Ilabs::ardupilot(settings)),
+            Self::Px4Ilabs => Box::new(Ilabs::px4(settings)),
             Self::Inav => Box::new(Inav::new(settings)),
         }
     }
@@ -83,6 +99,7 @@ impl Make {
             Self::Px4 | Self::Px4Sitl => Framing::Mavlink(Box::new(mavlink::Decoder::new())),
             Self::Ardupilot => Framing::Vectornav(Box::new(vectornav::Decoder::new())),
             Self::ArdupilotMip => Framing::Mip(Box::new(mip::Decoder::new())),
+            Self::ArdupilotIlabs | Self::Px4Ilabs => Framing::Ilabs(Box::new(ilabs::Decoder::new())),
             Self::Inav => Framing::Msp(Box::new(msp::Decoder::new())),
         }
     }

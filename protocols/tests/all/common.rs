@@ -2,7 +2,7 @@
 
 use ratetable_protocols::mavlink::{self, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
-use ratetable_protocols::{mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mip, msp, vectornav};
 use serde_json::Value;
 
 /// One golden packet: its JSON and its bytes.
@@ -323,6 +323,23 @@ pub fn vectornav_packet(json: &Value) -> vectornav::Packet {
             vectornav::Packet::Line(vectornav::line::Line::new(text).unwrap())
         }
         other => panic!("no packet type {other}"),
+    }
+}
+
+/// The `ilabs` frame that a vector describes: what it lacks is not told.
+pub fn ilabs_frame(json: &Value) -> ilabs::data::Repr {
+    use ilabs::data::{Angles, Pressure};
+    let f = |name: &str| json["fields"].get(name);
+    ilabs::data::Repr {
+        time_ms: f("time_ms").map(int),
+        accel: f("accel").map(ints),
+        gyro: f("gyro").map(ints),
+        pressure: f("pressure").map(|it| Pressure { half_pascals: int(&it[0]), altitude: int(&it[1]) }),
+        mag: f("mag").map(ints),
+        attitude: f("attitude").map(|it| Angles { yaw: int(&it[0]), pitch: int(&it[1]), roll: int(&it[2]) }),
+        status: f("status").map(int),
+        status_2: f("status_2").map(int),
+        temperature: f("temperature").map(int),
     }
 }
 

@@ -7,6 +7,23 @@ use super::memory::{CASES, Case, converse, converse_well, exact_deg, judge, own,
 /// What every stand-in's own attitude has to keep to, RMS over the scene, deg.
 pub const BOUND_DEG: f64 = 0.2;
 
+/// What a stand-in's own attitude has to keep to where the firmware itself was measured on such a link: its figure (roll,
+/// pitch and yaw together) and a tenth of a degree.
+pub fn bound_deg(make: Make) -> f64 {
+    match make {
+        Make::ArdupilotIlabs => 0.049 + 0.1,
+        Make::Px4Ilabs => 0.059 + 0.1,
+        _ => BOUND_DEG,
+    }
+}
+
+/// Who handles a sample some time after it arrived: at its time of arrival the estimate is not of it yet.
+pub fn is_late(make: Make) -> bool {
+    // INAV's estimate is of the sample before, and later by up to its task's period; PX4 reads this unit's frames 250
+    // bytes at a time, and holds three of them.
+    matches!(make, Make::Inav | Make::Px4Ilabs)
+}
+
 #[test]
 fn every_stand_in_follows_the_truth_and_its_answers_are_read_right() {
     for case in &CASES {
@@ -28,9 +45,8 @@ fn every_stand_in_follows_the_truth_and_its_answers_are_read_right() {
             figures.errors.heading_rms_deg,
             figures.delay_ms
         );
-        assert!(figures.errors.rms_deg < BOUND_DEG, "{what}: {figures:?}");
-        // INAV's estimate is of the sample before, and later by up to its task's period.
-        assert!(rms < BOUND_DEG || case.make == Make::Inav, "{what}: {rms}");
+        assert!(figures.errors.rms_deg < bound_deg(what), "{what}: {figures:?}");
+        assert!(rms < bound_deg(what) || is_late(what), "{what}: {rms}");
         if matches!(case.make, Make::Px4 | Make::Inav) {
             let answers = judge(&plan, &told.answers);
             eprintln!("{what}: as told {:.4} deg RMS, {} answers", answers.errors.rms_deg, answers.samples);

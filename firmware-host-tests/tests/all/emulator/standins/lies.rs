@@ -3,7 +3,7 @@
 use ratetable_firmware_host_tests::quaternion::{from_euler, mul};
 use ratetable_firmware_host_tests::standin::Make;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, hil_state_quaternion};
-use ratetable_protocols::{msp, vectornav};
+use ratetable_protocols::{ilabs, msp, vectornav};
 
 use super::doctor::{Vectors, doctor, encoded, simulator};
 use super::follow::BOUND_DEG;
@@ -25,6 +25,20 @@ fn lying_vectornav(stream: Stream) -> Stream {
         let [w, x, y, z] = mul(from_euler(1.6, 0.0, 1.6), [w, x, y, z]);
         ahrs.xyzw = [x, y, z, w].map(|c| c as f32);
         encoded(&vectornav::Packet::Ahrs(ahrs))
+    };
+    stream.into_iter().map(|(at, packet)| (at, lie(packet))).collect()
+}
+
+/// The frames of a stream with an attitude far off.
+fn lying_ilabs(stream: Stream) -> Stream {
+    let lie = |packet: Vec<u8>| {
+        let mut told = None;
+        ilabs::Decoder::new().feed(&packet, |received| told = received.ok());
+        let Some(mut frame) = told else { return packet };
+        frame.attitude = Some(ilabs::data::Angles { yaw: 12_345, pitch: -6000, roll: 17_000 });
+        let mut bytes = [0; ilabs::MAX_LEN];
+        let len = ilabs::encode(&frame, &mut bytes).unwrap();
+        bytes[..len].to_vec()
     };
     stream.into_iter().map(|(at, packet)| (at, lie(packet))).collect()
 }
@@ -61,8 +75,10 @@ const FLAGS: u8 =
 
 #[test]
 fn a_false_attitude_beside_the_samples_changes_no_estimate() {
-    let lies: [(Make, Lie); 4] = [
+    let lies: [(Make, Lie); 6] = [
         (Make::Ardupilot, lying_vectornav),
+        (Make::ArdupilotIlabs, lying_ilabs),
+        (Make::Px4Ilabs, lying_ilabs),
         (Make::Px4, lying_mavlink),
         (Make::Px4Sitl, lying_mavlink),
         (Make::Inav, |stream| lying_msp(stream, FLAGS)),
