@@ -36,6 +36,7 @@ mod faults;
 mod ilabs;
 mod latest;
 mod load;
+mod mag_unit;
 mod mavlink;
 mod mip;
 mod mpu;
@@ -45,6 +46,7 @@ mod packet;
 mod protocol;
 mod row;
 pub mod samples;
+mod sbg;
 mod seconds;
 mod text;
 mod vectornav;
@@ -54,6 +56,7 @@ pub use claim::Claim;
 pub use fault::{PacketFault, PacketFaultKind};
 pub use faults::{Acts, Faults};
 pub use load::load;
+pub use mag_unit::MagUnit;
 pub use packet::{MAX_PACKET, Packet};
 pub use protocol::{Protocol, check, encoder, warnings};
 
@@ -104,8 +107,19 @@ pub struct Options {
     pub version: Version,
     /// For `mavlink`: what is sent beside HIL_SENSOR.
     pub extras: Extras,
-    /// For `ilabs`: what the unit says of its own attitude.
+    /// For `ilabs` and `sbg`: what the unit says of its own attitude.
     pub claim: Claim,
+    /// For `sbg`: the unit of the field; `None` is what the controller takes it for.
+    pub mag: Option<MagUnit>,
+}
+
+impl Options {
+    /// The unit of a field whose protocol does not say it.
+    fn mag_unit(&self) -> MagUnit {
+        let usual =
+            if self.controller == Some(Controller::Px4) { MagUnit::Gauss } else { MagUnit::Milligauss };
+        self.mag.unwrap_or(usual)
+    }
 }
 
 /// What an encoder needs to know of the scene.

@@ -16,6 +16,7 @@ mod own;
 mod px4;
 mod px4_sitl;
 mod record;
+mod sbg;
 mod validator;
 
 use std::io;
@@ -31,6 +32,7 @@ pub use mip::Mip;
 pub use px4::{Parameters, Px4};
 pub use px4_sitl::Px4Sitl;
 pub use record::{Counts, Moment, Record};
+pub use sbg::Sbg;
 
 use crate::board::{Arrival, Port};
 use own::Own;

@@ -105,6 +105,108 @@ def ilabs_vectors():
     ]
 
 
+# ---- sbg: class, id, struct format. Vectors are forward, right, down.
+SBG = {
+    "imu_short": (0, 44, "<IH3i3ih"),
+    "mag": (0, 4, "<IH3f3f"),
+    "air_data": (0, 36, "<IH5f"),
+    "quat": (0, 7, "<I4f3fI"),
+    "info": (16, 4, "<32sIIHBBII"),
+    "info_request": (16, 4, "<"),
+}
+
+
+def kermit(data):
+    """CRC-16/KERMIT, bit by bit."""
+    crc = 0
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ 0x8408 if crc & 1 else crc >> 1
+    return crc
+
+
+def flat(value):
+    if isinstance(value, str):
+        return [value.encode()]
+    return value if isinstance(value, list) else [value]
+
+
+def sbg(kind, fields):
+    clas, ident, layout = SBG[kind]
+    payload = struct.pack(layout, *[part for value in fields.values() for part in flat(value)])
+    inside = bytes([ident, clas]) + struct.pack("<H", len(payload)) + payload
+    return b"\xff\x5a" + inside + struct.pack("<H", kermit(inside)) + b"\x33"
+
+
+def sbg_vectors():
+    assert kermit(b"123456789") == 0x2189
+    imu = {
+        "time_us": 42119999,
+        "status": 0x03FF,
+        "accel": [round(a * 1048576) for a in (0, -0.0430155, -9.806556)],
+        # 0.219307, 0.000284, 0.064725 rad/s to their sixth digit.
+        "gyro": [14717459, 19053, 4343641],
+        "temperature": 25 * 256,
+    }
+    for count, rate in zip(imu["gyro"], (0.219307, 0.000284, 0.064725)):
+        assert abs(count / 67108864 - rate) < 5e-7
+    field = {
+        "time_us": 42119999,
+        "status": 0x01FF,
+        "field": [175.64352, -130.58655, 430.57693],
+        "accel": [0.0, -0.04301551, -9.806556],
+    }
+    fast = {
+        "time_us": 4294967295,
+        "status": 0x07FF,
+        "accel": [round(a * 1048576) for a in (156, -156, 20)],
+        "gyro": [round(w * 12304174) for w in (40, -34.9, 0.001)],
+        "temperature": -40 * 256,
+    }
+    air = {
+        "time_us": 1000000,
+        "status": 0x22,
+        "pressure": 94500.0,
+        "altitude": 0.0,
+        "differential_pressure": 0.0,
+        "airspeed": 0.0,
+        "temperature": 25.0,
+    }
+    quat = {
+        "time_us": 1000000,
+        "wxyz": [0.5, -0.5, 0.5, 0.5],
+        "uncertainty": [0.125, 0.25, 0.5],
+        "status": 0x32,
+    }
+    info = {
+        "product": "RATETABLE",
+        "serial": 0,
+        "calibration": 0,
+        "year": 0,
+        "month": 0,
+        "day": 0,
+        "hardware": 1 << 24,
+        "firmware": 1 << 22,
+    }
+    assert sbg("imu_short", imu).hex() == (
+        "ff5a2c0020003fb38202ff0300000000cf4fffff591863ff1392e0006d4a0000594742000019e9b233"
+    )
+    assert sbg("mag", field).hex() == (
+        "ff5a04001e003fb38202ff01bea42f43289602c3d949d74300000000083130bda7e71cc10b3133"
+    )
+    assert sbg("info_request", {}).hex() == "ff5a0410000079f733"
+    return [
+        ("gyro 0.219307, 0.000284, 0.064725 rad/s; accel 0, -0.0430155, -9.806556 m/s²", "imu_short", imu),
+        ("a field of 483 mG, and the same accel", "mag", field),
+        ("faster than 32 rad/s, at the end of the clock", "imu_short", fast),
+        ("94500 Pa", "air_data", air),
+        ("an attitude", "quat", quat),
+        ("which device are you?", "info_request", {}),
+        ("the answer", "info", info),
+    ]
+
+
 def write(name, made, packets):
     text = json.dumps({"made": made, "packets": packets}, indent=1, ensure_ascii=False)
     (FOLDER / name).write_text(text + "\n")
@@ -115,4 +217,13 @@ write(
     "ArduPilot's driver took the first two packets. make.py beside this file wrote all of them from the table of "
     "docs/wire/ilabs.md: struct.pack for the fields, and Python's sum for the sum.",
     [{"name": name, "fields": fields, "hex": ilabs(fields).hex()} for name, fields in ilabs_vectors()],
+)
+write(
+    "sbg.json",
+    "ArduPilot's driver took the first two packets and sends the request. make.py beside this file wrote all of them "
+    "from the table of docs/wire/sbg.md: struct.pack for the fields, and a bit-by-bit CRC-16/KERMIT.",
+    [
+        {"name": name, "type": kind, "fields": fields, "hex": sbg(kind, fields).hex()}
+        for name, kind, fields in sbg_vectors()
+    ],
 )

@@ -106,7 +106,12 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     (
         "output",
         "attitude",
-        "for `ilabs`, the attitude told beside the readings: \"level\" (default), which is false once the vehicle moves, or \"truth\"",
+        "for `ilabs` and `sbg`, the attitude told beside the readings: \"level\" (default), which is false once the vehicle moves, or \"truth\"",
+    ),
+    (
+        "output",
+        "mag_unit",
+        "for `sbg`, the unit of the magnetic field: \"milligauss\" (default), which ArduPilot takes it for, or \"gauss\", which PX4 does",
     ),
     (
         "output",

@@ -5,7 +5,7 @@ use super::suggest;
 use super::target::{TARGETS, Target};
 use crate::link::Address;
 use crate::sensor::SensorPlan;
-use crate::wire::{self, Claim, Extra, Extras, Layout, Protocol, Version};
+use crate::wire::{self, Claim, Extra, Extras, Layout, MagUnit, Protocol, Version};
 use std::fmt;
 use std::str::FromStr;
 
@@ -148,21 +148,24 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
     let (version, extras) = mavlink(section);
-    let claim = claim(section);
+    let (claim, mag) = unit(section);
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
     let to = section.text("to", None)?;
     let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
     let controller = to.target.map(|target| target.controller);
-    let wire = wire::Options { layout, version, extras, controller, claim };
+    let wire = wire::Options { layout, version, extras, controller, claim, mag };
     for key in ["version", "messages"] {
         if section.has(key) && to.protocol != Protocol::Mavlink {
             section.mistake(key, format!("is for `mavlink`, not for `{}`", to.protocol.name()));
         }
     }
-    if section.has("attitude") && to.protocol != Protocol::Ilabs {
-        section.mistake("attitude", format!("is for `ilabs`, not for `{}`", to.protocol.name()));
+    if section.has("attitude") && !matches!(to.protocol, Protocol::Ilabs | Protocol::Sbg) {
+        section.mistake("attitude", format!("is for `ilabs` and `sbg`, not for `{}`", to.protocol.name()));
+    }
+    if section.has("mag_unit") && to.protocol != Protocol::Sbg {
+        section.mistake("mag_unit", format!("is for `sbg`, not for `{}`", to.protocol.name()));
     }
     if layout.is_some() && to.protocol != Protocol::Mpu {
         section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
@@ -202,10 +205,11 @@ fn mavlink(section: &Section<'_>) -> (Version, Extras) {
     (version, extras)
 }
 
-/// `attitude`, which only units have that tell one.
-fn claim(section: &Section<'_>) -> Claim {
-    let said = section.has("attitude").then(|| section.word("attitude", &Claim::NAMES, Claim::NAMES[0]));
-    said.map_or(Claim::default(), Claim::from_name)
+/// `attitude` and `mag_unit`, which only some units have.
+fn unit(section: &Section<'_>) -> (Claim, Option<MagUnit>) {
+    let word = |key, words: &[&'static str; 2]| section.has(key).then(|| section.word(key, words, words[0]));
+    let claim = word("attitude", &Claim::NAMES).map_or(Claim::default(), Claim::from_name);
+    (claim, word("mag_unit", &MagUnit::NAMES).map(MagUnit::from_name))
 }
 
 /// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.

@@ -31,7 +31,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub static TARGETS: [Target; 6] = [
+pub static TARGETS: [Target; 7] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
@@ -86,6 +86,19 @@ pub static TARGETS: [Target; 6] = [
         // The rate of the real unit: 70 bytes a frame.
         settings: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
         asks: "nothing: it only listens",
+    },
+    Target {
+        name: "ardupilot-sbg",
+        about: "ArduPilot, whose external AHRS driver reads ratetable as an SBG Systems unit: nothing has to be answered",
+        protocol: Protocol::Sbg,
+        controller: Controller::Ardupilot,
+        link: None,
+        baud: Some(230_400),
+        rest: SimTime(10 * NANOS),
+        most_hz: None,
+        scene: "level-then-turn",
+        settings: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
+        asks: "nothing: it asks which device this is, and is answered",
     },
     Target {
         name: "px4-ilabs",

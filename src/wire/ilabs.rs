@@ -10,7 +10,7 @@ mod reader;
 use super::latest::{CARRIED, Latest, pascals};
 use super::newest::Told;
 use super::row::{Row, Shared, any};
-use super::wrap::WEEK;
+use super::wrap::{WEEK, next_step};
 use super::{Claim, Encoder, Now, Packet, Setup};
 use crate::geometry::{Body, Euler, Vector};
 use crate::motion::Truth;
@@ -71,7 +71,8 @@ impl Encoder for Ilabs {
         let Some(truth) = &self.last else { return };
         let still = self.latest.stopped(truth, self.kinds);
         let mut buffer = [0; ilabs::MAX_LEN];
-        let len = write(t, &still, angles(self.claim, truth), &mut buffer);
+        let told = next_step(t, MILLISECOND);
+        let len = write(told, &still, angles(self.claim, truth), &mut buffer);
         out.push(Packet::new(t, Kinds::NONE, &buffer[..len]));
     }
 

@@ -3,7 +3,7 @@
 use super::dialogue::Dialogue;
 use super::row::Row;
 use super::{
-    Controller, Encoder, Now, Options, Packet, Setup, ilabs, mavlink, mip, mpu, msp, text, vectornav,
+    Controller, Encoder, Now, Options, Packet, Setup, ilabs, mavlink, mip, mpu, msp, sbg, text, vectornav,
 };
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::SimTime;
@@ -24,6 +24,8 @@ pub enum Protocol {
     Mip,
     /// User-defined data of an Inertial Labs unit, for ArduPilot and PX4.
     Ilabs,
+    /// sbgECom packets of an SBG Systems unit, for ArduPilot.
+    Sbg,
     /// A line of comma-separated values a reading.
     Csv,
     /// A JSON object a reading.
@@ -31,18 +33,28 @@ pub enum Protocol {
 }
 
 /// Every protocol's row, in order.
-static ROWS: [&Row; 8] =
-    [&mpu::ROW, &mavlink::ROW, &msp::ROW, &vectornav::ROW, &mip::ROW, &ilabs::ROW, &text::CSV, &text::JSONL];
+static ROWS: [&Row; 9] = [
+    &mpu::ROW,
+    &mavlink::ROW,
+    &msp::ROW,
+    &vectornav::ROW,
+    &mip::ROW,
+    &ilabs::ROW,
+    &sbg::ROW,
+    &text::CSV,
+    &text::JSONL,
+];
 
 impl Protocol {
     /// Every protocol.
-    pub const ALL: [Protocol; 8] = [
+    pub const ALL: [Protocol; 9] = [
         Protocol::Mpu,
         Protocol::Mavlink,
         Protocol::Msp,
         Protocol::Vectornav,
         Protocol::Mip,
         Protocol::Ilabs,
+        Protocol::Sbg,
         Protocol::Csv,
         Protocol::Jsonl,
     ];

@@ -9,6 +9,7 @@ mod stream;
 pub use log::Stamps;
 pub use stream::Samples;
 
+use super::mag_unit::MagUnit;
 use crate::geometry::{Axes, Body, Vector};
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
@@ -120,6 +121,8 @@ pub struct Assumed {
     pub axes: Axes,
     /// From body to the chip's axes, of gyro, accel and mag, for the registers of `mpu`.
     pub mounts: [Mount; 3],
+    /// The unit that a field is told in whose protocol does not say it (`sbg`).
+    pub mag: MagUnit,
     /// Whether it is a recording, which may have a stamp before each packet.
     pub recorded: bool,
 }
@@ -127,7 +130,7 @@ pub struct Assumed {
 impl Default for Assumed {
     /// Forward-right-down, and chips whose x points forward and z up, as the encoders of a plain scene have it.
     fn default() -> Assumed {
-        Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3], recorded: false }
+        Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3], mag: MagUnit::default(), recorded: false }
     }
 }
 

@@ -16,9 +16,22 @@ pub(super) fn unwrapped(part: i64, period: i64, near: SimTime) -> SimTime {
     SimTime(if nearest < 0 { nearest + period } else { nearest })
 }
 
+/// The first time at or after `t` that a clock of such steps, in ns, can tell: a last packet so close behind the one before
+/// that both would have the same time.
+pub(super) fn next_step(t: SimTime, step: i64) -> SimTime {
+    SimTime((t.0 + step - 1).div_euclid(step) * step)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_time_that_a_clock_cannot_tell_is_the_next_that_it_can() {
+        for (t, expected) in [(0, 0), (1, 1000), (999, 1000), (1000, 1000), (1001, 2000)] {
+            assert_eq!(next_step(SimTime(t), 1000).0, expected, "{t}");
+        }
+    }
 
     #[test]
     fn time_goes_on_where_a_clock_begins_again_and_may_step_back_a_little() {

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use ratetable_protocols::{ilabs, mavlink, mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mavlink, mip, msp, sbg, vectornav};
 
-use super::{Ardupilot, Firmware, Framing, Ilabs, Inav, Mip, Parameters, Px4, Px4Sitl};
+use super::{Ardupilot, Firmware, Framing, Ilabs, Inav, Mip, Parameters, Px4, Px4Sitl, Sbg};
 use crate::ahrs::Kind;
 
 /// A firmware on a kind of link.
@@ -21,6 +21,8 @@ pub enum Make {
     ArdupilotMip,
     /// ArduPilot with an Inertial Labs unit.
     ArdupilotIlabs,
+    /// ArduPilot with an SBG Systems unit.
+    ArdupilotSbg,
     /// PX4 with an Inertial Labs unit.
     Px4Ilabs,
     /// INAV.
@@ -57,12 +59,13 @@ impl Default for Settings {
 
 impl Make {
     /// Every make.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Px4,
         Self::Px4Sitl,
         Self::Ardupilot,
         Self::ArdupilotMip,
         Self::ArdupilotIlabs,
+        Self::ArdupilotSbg,
         Self::Px4Ilabs,
         Self::Inav,
     ];
@@ -75,6 +78,7 @@ impl Make {
             Self::Ardupilot => "ardupilot",
             Self::ArdupilotMip => "ardupilot-mip",
             Self::ArdupilotIlabs => "ardupilot-ilabs",
+            Self::ArdupilotSbg => "ardupilot-sbg",
             Self::Px4Ilabs => "px4-ilabs",
             Self::Inav => "inav",
         }
@@ -88,6 +92,7 @@ impl Make {
             Self::Ardupilot => Box::new(Ardupilot::new(settings)),
             Self::ArdupilotMip => Box::new(Mip::new(settings)),
             Self::ArdupilotIlabs => Box::new(Ilabs::ardupilot(settings)),
+            Self::ArdupilotSbg => Box::new(Sbg::new(settings)),
             Self::Px4Ilabs => Box::new(Ilabs::px4(settings)),
             Self::Inav => Box::new(Inav::new(settings)),
         }
@@ -100,6 +105,7 @@ impl Make {
             Self::Ardupilot => Framing::Vectornav(Box::new(vectornav::Decoder::new())),
             Self::ArdupilotMip => Framing::Mip(Box::new(mip::Decoder::new())),
             Self::ArdupilotIlabs | Self::Px4Ilabs => Framing::Ilabs(Box::new(ilabs::Decoder::new())),
+            Self::ArdupilotSbg => Framing::Sbg(Box::new(sbg::Decoder::new())),
             Self::Inav => Framing::Msp(Box::new(msp::Decoder::new())),
         }
     }

@@ -16,7 +16,8 @@ const HELD_LEN: usize = LONGEST + 1;
 
 /// Finds frames in a stream; holds what has come of the next one.
 ///
-/// After damage it looks on from the byte behind the false start, so that a damaged length hides no frame.
+/// After damage it looks on from the byte behind the false start, so that a damaged length hides no frame. The sum finds
+/// a flipped bit, but not two that cancel.
 #[derive(Debug, Clone)]
 pub struct Decoder(Scanner<HELD_LEN>);
 

@@ -2,7 +2,7 @@
 
 use ratetable_protocols::mavlink::{self, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
-use ratetable_protocols::{ilabs, mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mip, msp, sbg, vectornav};
 use serde_json::Value;
 
 /// One golden packet: its JSON and its bytes.
@@ -340,6 +340,58 @@ pub fn ilabs_frame(json: &Value) -> ilabs::data::Repr {
         status: f("status").map(int),
         status_2: f("status_2").map(int),
         temperature: f("temperature").map(int),
+    }
+}
+
+/// The `sbg` packet that a vector describes.
+pub fn sbg_packet(json: &Value) -> sbg::Packet {
+    let f = &json["fields"];
+    match json["type"].as_str().unwrap() {
+        "imu_short" => sbg::Packet::ImuShort(sbg::imu_short::Repr {
+            time_us: int(&f["time_us"]),
+            status: int(&f["status"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            temperature: int(&f["temperature"]),
+        }),
+        "mag" => sbg::Packet::Mag(sbg::mag::Repr {
+            time_us: int(&f["time_us"]),
+            status: int(&f["status"]),
+            field: floats(&f["field"]),
+            accel: floats(&f["accel"]),
+        }),
+        "air_data" => sbg::Packet::AirData(sbg::air_data::Repr {
+            time_us: int(&f["time_us"]),
+            status: int(&f["status"]),
+            pressure: float(&f["pressure"]),
+            altitude: float(&f["altitude"]),
+            differential_pressure: float(&f["differential_pressure"]),
+            airspeed: float(&f["airspeed"]),
+            temperature: float(&f["temperature"]),
+        }),
+        "quat" => sbg::Packet::Quat(sbg::quat::Repr {
+            time_us: int(&f["time_us"]),
+            wxyz: floats(&f["wxyz"]),
+            uncertainty: floats(&f["uncertainty"]),
+            status: int(&f["status"]),
+        }),
+        "info_request" => sbg::Packet::InfoRequest,
+        "info" => {
+            let mut product = [0; 32];
+            let name = f["product"].as_str().unwrap().as_bytes();
+            product[..name.len()].copy_from_slice(name);
+            sbg::Packet::Info(sbg::info::Repr {
+                product,
+                serial: int(&f["serial"]),
+                calibration: int(&f["calibration"]),
+                year: int(&f["year"]),
+                month: int(&f["month"]),
+                day: int(&f["day"]),
+                hardware: int(&f["hardware"]),
+                firmware: int(&f["firmware"]),
+            })
+        }
+        other => panic!("no packet type {other}"),
     }
 }
 

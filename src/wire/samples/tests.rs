@@ -40,7 +40,7 @@ mount = "luf"
 fn assumed(plan: &Plan) -> Assumed {
     let mount = |kind| plan.sensors.iter().find(|sensor| sensor.kind == kind).and_then(|sensor| sensor.mount);
     let mounts = SensorKind::TRIADS.map(|kind| mount(kind).unwrap_or(Mount::flu()));
-    Assumed { axes: plan.axes, mounts, recorded: false }
+    Assumed { axes: plan.axes, mounts, ..Assumed::default() }
 }
 
 /// Everything that these bytes hold, fed in pieces of so many bytes.
@@ -63,9 +63,11 @@ fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
     let ilabs = [1e-5_f64.to_radians(), 9.8106e-6, 0.01][kind as usize];
     match protocol {
         Protocol::Ilabs => 0.5 * ilabs * (1.0 + 1e-6),
+        Protocol::Sbg if kind == SensorKind::Gyro => 0.5 / 67_108_864.0 * (1.0 + 1e-6),
+        Protocol::Sbg if kind == SensorKind::Accel => 0.5 / 1_048_576.0 * (1.0 + 1e-6),
         Protocol::Mpu => 0.5 * count * (1.0 + 1e-9),
         Protocol::Msp => 0.5 * msp * (1.0 + 1e-9),
-        Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip => {
+        Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip | Protocol::Sbg => {
             2.0 * reading.abs() * f64::from(f32::EPSILON)
         }
         Protocol::Csv | Protocol::Jsonl => 0.0,
@@ -82,7 +84,7 @@ fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample
         }
         for ((t, reading), sample) in sent.into_iter().zip(came) {
             let unit = match protocol {
-                Protocol::Mpu | Protocol::Mavlink => Some(1000),
+                Protocol::Mpu | Protocol::Mavlink | Protocol::Sbg => Some(1000),
                 Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => Some(1),
                 Protocol::Ilabs => Some(1_000_000),
                 Protocol::Msp | Protocol::Mip => None,
@@ -113,8 +115,10 @@ fn every_sample_comes_back_with_its_time_and_value() {
     for plan in scenes.iter().chain(&turned).map(|text| plan(text)) {
         for protocol in Protocol::ALL {
             let (packets, readings) = play(&plan, protocol, None);
-            // With MAVLink a sensor's sample leaves at the next tick of the gyro: compare where they tick together.
-            if protocol == Protocol::Mavlink && plan.sensors[1].rate != plan.sensors[0].rate {
+            // With these an accelerometer's sample leaves at the next tick of the gyro: compare where they tick together.
+            if matches!(protocol, Protocol::Mavlink | Protocol::Sbg)
+                && plan.sensors[1].rate != plan.sensors[0].rate
+            {
                 continue;
             }
             // These tell every sensor in every packet, at most 100 times a second: compare where all are new.

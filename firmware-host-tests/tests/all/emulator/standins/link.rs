@@ -108,6 +108,11 @@ fn ardupilot_with_an_inertial_labs_unit_on_a_pty_follows() {
 }
 
 #[test]
+fn ardupilot_with_an_sbg_systems_unit_on_a_pty_follows() {
+    follows(Make::ArdupilotSbg);
+}
+
+#[test]
 fn px4_with_an_inertial_labs_unit_on_a_pty_follows() {
     follows(Make::Px4Ilabs);
 }
