@@ -47,7 +47,7 @@ pub use output::{Destination, Output, Overload};
 pub use reference::{AUTO, Reference};
 pub use suggest::nearest;
 pub use sweep::{Runs, SweptKey, SweptValue};
-pub use target::{TARGETS, Target};
+pub use target::{TARGETS, Target, Tells};
 
 use crate::earth::{self, Day};
 use crate::geometry::Axes;

@@ -30,11 +30,14 @@
 //! ```
 
 mod beat;
+mod claim;
 pub mod dialogue;
 mod fault;
 mod faults;
+mod ilabs;
 mod latest;
 mod load;
+mod mag_unit;
 mod mavlink;
 mod mip;
 mod mpu;
@@ -44,13 +47,17 @@ mod packet;
 mod protocol;
 mod row;
 pub mod samples;
+mod sbg;
 mod seconds;
 mod text;
 mod vectornav;
+mod wrap;
 
+pub use claim::Claim;
 pub use fault::{PacketFault, PacketFaultKind};
 pub use faults::{Acts, Faults};
 pub use load::load;
+pub use mag_unit::MagUnit;
 pub use packet::{MAX_PACKET, Packet};
 pub use protocol::{Protocol, check, encoder, warnings};
 
@@ -91,18 +98,6 @@ pub enum Controller {
     Ardupilot,
     /// INAV with its HITL simulator message.
     Inav,
-}
-
-impl Controller {
-    /// Whether it tells its attitude on the same link while the vehicle rests.
-    pub(crate) const fn tells_rest(self) -> bool {
-        matches!(self, Controller::Px4 | Controller::Inav)
-    }
-
-    /// Whether it answers while the scene is played: with its attitude, or in lockstep.
-    pub(crate) const fn answers(self) -> bool {
-        matches!(self, Controller::Px4 | Controller::Px4Sitl | Controller::Inav)
-    }
 }
 
 /// What a packet carries of the samples since the packet before.
@@ -167,6 +162,19 @@ pub struct Options {
     pub version: Version,
     /// For `mavlink`: the messages to send beside HIL_SENSOR.
     pub extras: Extras,
+    /// For `ilabs` and `sbg`: what the unit says of its own attitude.
+    pub claim: Claim,
+    /// For `sbg`: the unit of the field; `None` is what the controller takes it for.
+    pub mag: Option<MagUnit>,
+}
+
+impl Options {
+    /// The unit of a field whose protocol does not say it.
+    fn mag_unit(&self) -> MagUnit {
+        let usual =
+            if self.controller == Some(Controller::Px4) { MagUnit::Gauss } else { MagUnit::Milligauss };
+        self.mag.unwrap_or(usual)
+    }
 }
 
 /// What an encoder needs of the scene.

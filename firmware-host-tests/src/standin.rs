@@ -8,6 +8,7 @@
 mod ardupilot;
 mod arrivals;
 mod hil;
+mod ilabs;
 mod inav;
 mod make;
 mod mip;
@@ -16,6 +17,7 @@ mod px4;
 mod px4_sitl;
 mod px4_vectornav;
 mod record;
+mod sbg;
 mod validator;
 
 use std::io;
@@ -24,6 +26,7 @@ use std::time::Duration;
 
 pub use ardupilot::Ardupilot;
 pub use arrivals::{Clock, Framing};
+pub use ilabs::Ilabs;
 pub use inav::Inav;
 pub use make::{Make, Settings};
 pub use mip::Mip;
@@ -31,6 +34,7 @@ pub use px4::{Parameters, Px4};
 pub use px4_sitl::Px4Sitl;
 pub use px4_vectornav::Px4Vectornav;
 pub use record::{Counts, Moment, Record};
+pub use sbg::Sbg;
 
 use crate::board::{Arrival, Port};
 use own::Own;

@@ -2,8 +2,8 @@
 //!
 //! One room a format: [`mpu`] carries an MPU's registers in a stream that survives damage,
 //! [`mavlink`] a handful of MAVLink messages, [`msp`] INAV's simulator message and the questions
-//! around it, [`vectornav`] and [`mip`] what external units send to ArduPilot. Every payload file
-//! declares its fields once (`message.rs`), and the rest follows: a view over bytes (`Payload`), the
+//! around it, [`vectornav`], [`mip`], [`ilabs`] and [`sbg`] what external units send to ArduPilot and PX4. Every
+//! payload file declares its fields once (`message.rs`), and the rest follows: a view over bytes (`Payload`), the
 //! same as plain values (`Repr` with `parse`, `buffer_len` and `emit`), and tests over one golden array.
 //!
 //! What this crate promises: nothing panics on any bytes, nothing allocates, nothing reads a
@@ -27,10 +27,12 @@ mod message;
 mod bytes;
 pub mod cobs;
 mod error;
+pub mod ilabs;
 pub mod mavlink;
 pub mod mip;
 pub mod mpu;
 pub mod msp;
+pub mod sbg;
 mod scanner;
 mod sequence;
 pub mod vectornav;

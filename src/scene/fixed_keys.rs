@@ -105,6 +105,16 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ),
     (
         "output",
+        "attitude",
+        "for `ilabs` and `sbg`, the attitude told beside the readings: \"level\" (default), which is false once the vehicle moves, or \"truth\"",
+    ),
+    (
+        "output",
+        "mag_unit",
+        "for `sbg`, the unit of the magnetic field: \"milligauss\" (default), which ArduPilot takes it for, or \"gauss\", which PX4 does",
+    ),
+    (
+        "output",
         "pace",
         "whether a pty with a baud rate, such as \"mpu@pty,115200\", has the timing of a UART (default true)",
     ),

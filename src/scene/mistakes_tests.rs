@@ -382,6 +382,18 @@ const REST: &[Case] = &[
         gyro!("[accel]\n[[output]]\nto = \"mpu@pty\"\nlayout = \"burst\"\n"),
         &[("4:1", "[accel] needs a rate")],
     ),
+    (
+        gyro!("[[output]]\nto = \"mpu@pty\"\nattitude = \"truth\"\n"),
+        &[("6:12", "`attitude` is for `ilabs` and `sbg`, not for `mpu`")],
+    ),
+    (
+        gyro!("[[output]]\nto = \"sbg@pty\"\nattitude = \"true\"\nmag_unit = \"uT\"\n"),
+        &[("6:12", "takes level or truth, not `true`"), ("7:12", "takes milligauss or gauss, not `uT`")],
+    ),
+    (
+        gyro!("[[output]]\nto = \"ilabs@pty\"\nmag_unit = \"gauss\"\n"),
+        &[("6:12", "`mag_unit` is for `sbg`, not for `ilabs`")],
+    ),
     (gyro!("[[output]]\nto = \"csv@-\"\nlayout = \"burst\"\n"), &[("6:10", "is for `mpu`, not for `csv`")]),
     (
         gyro!("[[output]]\nto = \"mpu@pty\"\nversion = 1\nmessages = []\n"),

@@ -5,7 +5,7 @@ use super::suggest;
 use super::target::{TARGETS, Target};
 use crate::link::Address;
 use crate::sensor::SensorPlan;
-use crate::wire::{self, AtEnd, Extra, Extras, Layout, Protocol, Thin, Version};
+use crate::wire::{self, AtEnd, Claim, Extra, Extras, Layout, MagUnit, Protocol, Thin, Version};
 use std::fmt;
 use std::str::FromStr;
 
@@ -155,6 +155,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
     let (version, extras) = mavlink(section);
+    let (claim, mag) = unit(section);
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
@@ -165,7 +166,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
         section.has("thin").then(|| Thin::from_name(section.word("thin", &Thin::NAMES, Thin::NAMES[1])));
     let at_end = section.has("at_end").then(|| section.word("at_end", &AtEnd::NAMES, AtEnd::NAMES[0]));
     let at_end = at_end.map_or(AtEnd::default(), AtEnd::from_name);
-    let wire = wire::Options { layout, version, extras, controller, at_end, thin };
+    let wire = wire::Options { layout, version, extras, controller, at_end, thin, claim, mag };
     for key in Protocol::own_keys().filter(|key| section.has(key)) {
         let owners: Vec<_> = Protocol::owners(key).map(|it| format!("`{}`", it.name())).collect();
         if !Protocol::owners(key).any(|it| it == to.protocol) {
@@ -206,6 +207,13 @@ fn mavlink(section: &Section<'_>) -> (Version, Extras) {
         }
     }
     (version, extras)
+}
+
+/// `attitude` and `mag_unit`, which only some units have.
+fn unit(section: &Section<'_>) -> (Claim, Option<MagUnit>) {
+    let word = |key, words: &[&'static str; 2]| section.has(key).then(|| section.word(key, words, words[0]));
+    let claim = word("attitude", &Claim::NAMES).map_or(Claim::default(), Claim::from_name);
+    (claim, word("mag_unit", &MagUnit::NAMES).map(MagUnit::from_name))
 }
 
 /// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.

@@ -35,26 +35,53 @@ pub struct Target {
     pub wants: &'static [&'static str],
     /// What it is asked for, or sends by itself.
     pub asks: &'static str,
+    /// What it tells on the same link while the scene is played.
+    pub tells: Tells,
 }
 
+/// What a controller tells while it is played to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tells {
+    /// Nothing.
+    Nothing,
+    /// Its attitude.
+    Attitude,
+    /// That it took a packet of samples: lockstep.
+    Steps,
+}
+
+/// What most targets have.
+const USUAL: Target = Target {
+    name: "",
+    about: "",
+    protocol: Protocol::Mavlink,
+    controller: Controller::Ardupilot,
+    link: None,
+    baud: None,
+    sets_baud: None,
+    rest: SimTime::ZERO,
+    most_hz: None,
+    asks_rate: None,
+    scene: "level-then-turn",
+    settings: &[],
+    wants: &[],
+    asks: "",
+    tells: Tells::Nothing,
+};
+
 /// Every target.
-pub static TARGETS: [Target; 6] = [
+pub static TARGETS: [Target; 9] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
         protocol: Protocol::Mavlink,
         controller: Controller::Px4,
-        link: None,
         baud: Some(921_600),
-        sets_baud: None,
-        rest: SimTime::ZERO,
-        most_hz: None,
-        asks_rate: None,
-        scene: "level-then-turn",
-        settings: &[],
         // "Preflight Fail: barometer 0 missing" without one (measured).
         wants: &["baro.rate=50 Hz"],
         asks: "ATTITUDE, ATTITUDE_QUATERNION, and the parameters that decide whether it accepts them",
+        tells: Tells::Attitude,
+        ..USUAL
     },
     Target {
         name: "px4-sitl",
@@ -62,84 +89,100 @@ pub static TARGETS: [Target; 6] = [
         protocol: Protocol::Mavlink,
         controller: Controller::Px4Sitl,
         link: Some("tcpin:4560"),
-        baud: None,
-        sets_baud: None,
-        rest: SimTime::ZERO,
-        most_hz: None,
-        asks_rate: None,
-        scene: "level-then-turn",
-        settings: &[],
         // "Preflight Fail: barometer 0 missing" without one (measured).
         wants: &["baro.rate=50 Hz"],
         asks: "HIL_ACTUATOR_CONTROLS, one for each HIL_SENSOR",
+        tells: Tells::Steps,
+        ..USUAL
     },
     Target {
         name: "px4-vectornav",
         about: "PX4, whose vectornav driver reads ratetable as a VN-100 on a plain UART: its EKF2 runs on the samples, without HITL",
         protocol: Protocol::Vectornav,
         controller: Controller::Px4Vectornav,
-        link: None,
         // A new unit's, which its driver tries first.
         baud: Some(115_200),
         sets_baud: Some(921_600),
         rest: SimTime(5 * NANOS),
-        most_hz: None,
         asks_rate: Some("VN_IMU_RATE"),
-        scene: "level-then-turn",
         // As many as it asks for unless VN_IMU_RATE says otherwise.
         settings: &["gyro.rate=800 Hz", "accel.rate=800 Hz"],
-        wants: &[],
         asks: "nothing: it sets up two outputs, the first at the rate in VN_IMU_RATE",
+        ..USUAL
     },
     Target {
         name: "ardupilot",
         about: "ArduPilot, whose external AHRS driver reads ratetable as a VN-100: start ratetable before it boots",
         protocol: Protocol::Vectornav,
         controller: Controller::Ardupilot,
-        link: None,
         baud: Some(115_200),
-        sets_baud: None,
         // Its EKF aligns yaw 6.4 s after it boots (measured).
         rest: SimTime(10 * NANOS),
-        most_hz: None,
         asks_rate: Some("EAHRS_RATE"),
-        scene: "level-then-turn",
         // As many as its default baud rate carries; it asks for its own number of packets.
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
-        wants: &[],
         asks: "nothing: it configures the output at the rate in EAHRS_RATE",
+        ..USUAL
     },
     Target {
         name: "ardupilot-mip",
         about: "ArduPilot, whose external AHRS driver reads ratetable as a MicroStrain unit: start ratetable before it boots",
         protocol: Protocol::Mip,
         controller: Controller::Ardupilot,
-        link: None,
         baud: Some(115_200),
-        sets_baud: None,
         rest: SimTime(10 * NANOS),
-        most_hz: None,
-        asks_rate: None,
-        scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
-        wants: &[],
         asks: "nothing: this unit is only listened to",
+        ..USUAL
+    },
+    Target {
+        name: "ilabs",
+        about: "ArduPilot, whose external AHRS driver reads ratetable as an Inertial Labs unit: it asks for nothing",
+        protocol: Protocol::Ilabs,
+        controller: Controller::Ardupilot,
+        baud: Some(230_400),
+        // EKF3 aligns its heading 6.4 s after its boot begins.
+        rest: SimTime(10 * NANOS),
+        // The rate of the real unit: 70 bytes a frame.
+        settings: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
+        asks: "nothing: it only listens",
+        ..USUAL
+    },
+    Target {
+        name: "sbg",
+        about: "ArduPilot, whose external AHRS driver reads ratetable as an SBG Systems unit: nothing has to be answered",
+        protocol: Protocol::Sbg,
+        controller: Controller::Ardupilot,
+        baud: Some(230_400),
+        rest: SimTime(10 * NANOS),
+        settings: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
+        asks: "nothing: it asks which device this is, and is answered",
+        ..USUAL
+    },
+    Target {
+        name: "px4-ilabs",
+        about: "PX4, whose `ilabs` driver reads ratetable as an Inertial Labs unit: its own EKF2 on our samples, without HITL",
+        protocol: Protocol::Ilabs,
+        controller: Controller::Px4,
+        // The driver has no other speed.
+        baud: Some(921_600),
+        rest: SimTime(10 * NANOS),
+        settings: &["gyro.rate=200 Hz", "accel.rate=200 Hz"],
+        asks: "nothing: it only listens",
+        ..USUAL
     },
     Target {
         name: "inav",
         about: "INAV with its HITL simulator message over MSP",
         protocol: Protocol::Msp,
         controller: Controller::Inav,
-        link: None,
         baud: Some(115_200),
-        sets_baud: None,
         rest: SimTime(20 * NANOS),
         most_hz: Some(100),
-        asks_rate: None,
-        scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
-        wants: &[],
         asks: "its variant and MSP_ATTITUDE until it answers; then each simulator message is answered with its attitude",
+        tells: Tells::Attitude,
+        ..USUAL
     },
 ];
 

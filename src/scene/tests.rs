@@ -6,7 +6,7 @@ use crate::earth;
 use crate::geometry::{Body, Nav, Vector, exp};
 use crate::sensor::{self, Mount, Sampling, SensorKind, white_noise};
 use crate::time::{NANOS, Rate};
-use crate::wire::{Extra, Layout, Protocol, Version};
+use crate::wire::{Claim, Extra, Layout, MagUnit, Protocol, Version};
 use glam::DVec3;
 
 /// The example of the documentation, every key of it.
@@ -467,6 +467,21 @@ fn an_output_of_mavlink_has_a_version_and_messages_on_request() {
         ["HIL_STATE_QUATERNION", "SCALED_IMU2"]
     );
     assert_eq!(wire("version = 2\nmessages = []\n"), wire(""), "as by default");
+}
+
+#[test]
+fn an_output_of_a_unit_says_what_it_claims_of_its_attitude_and_in_which_unit_its_field_is() {
+    let whole = |keys: &str| plan(&format!("{SHORT}[[output]]\n{keys}"));
+    let wire = |keys: &str| whole(keys).outputs.remove(0).wire;
+    let plain = wire("to = \"sbg@pty\"\n");
+    assert_eq!((plain.claim, plain.mag), (Claim::Level, None), "false, and what the controller takes it for");
+    let keys = "to = \"sbg@pty\"\nattitude = \"truth\"\nmag_unit = \"gauss\"\n";
+    let asked = wire(keys);
+    assert_eq!((asked.claim, asked.mag), (Claim::Truth, Some(MagUnit::Gauss)));
+    assert_eq!(wire("to = \"px4-ilabs@pty\"\nattitude = \"level\"\n").claim, Claim::Level);
+    // As resolved it says the same, and a plain output nothing of it.
+    assert_eq!(plan(&whole(keys).resolved).outputs[0].wire, asked);
+    assert!(!whole("to = \"sbg@pty\"\n").resolved.contains("attitude = \"level\""));
 }
 
 #[test]

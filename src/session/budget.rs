@@ -174,6 +174,22 @@ mod tests {
     }
 
     #[test]
+    fn units_on_a_uart_need_230400_baud_for_200_hz() {
+        let scene = "[gyro]\nrate = \"200 Hz\"\n[accel]\nrate = \"200 Hz\"\n[mag]\nrate = \"100 Hz\"\n";
+        // 70 bytes a frame; 41 an IMU_SHORT, 39 a MAG, 45 a QUAT, 35 an AIR_DATA.
+        let sbg = 200.0 * 41.0 + 100.0 * 39.0 + 50.0 * 45.0 + 10.0 * 35.0;
+        for (name, needed) in [("ilabs", 200.0 * 70.0), ("sbg", sbg)] {
+            let slow = budget(scene, &format!("to = \"{name}@/dev/ttyUSB0,115200\"\n"), 1.0);
+            assert!((slow.bytes_per_s - needed).abs() < 1e-6, "{name}: {}", slow.bytes_per_s);
+            let ways = slow.ways_out.join("\n");
+            let faster = format!("{name}@/dev/ttyUSB0,230400 carries 23040 bytes/s");
+            assert!(!slow.fits() && ways.contains(&faster), "{ways}");
+            let usual = budget(scene, &format!("to = \"ardupilot-{name}@/dev/ttyUSB0\"\n"), 1.0);
+            assert_eq!((usual.capacity, usual.fits()), (Some(23_040.0), true), "{name}");
+        }
+    }
+
+    #[test]
     fn each_way_out_has_its_number_and_only_those_that_are_ways_are_named() {
         let ways = |scene: &str, output: &str| budget(scene, output, 1.0).ways_out.join("\n");
         // A slow accelerometer gets separate packets, which are shorter.

@@ -8,10 +8,9 @@ use super::step::{Step, in_lockstep};
 use super::tally::Tally;
 use crate::link::{Baud, Sender};
 use crate::report::AnswersReport;
-use crate::scene::Output;
+use crate::scene::{Output, Tells};
 use crate::score::Timed;
 use crate::time::SimTime;
-use crate::wire::Controller;
 use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -53,6 +52,7 @@ impl Side {
     /// The other side of an output; `sender` is the way to its link. `paced` is whether wall time means anything, `rest`
     /// how long the vehicle rests at least before the scene.
     pub(super) fn new(output: &Output, sender: Sender, paced: bool, rest: Option<SimTime>) -> Side {
+        let tells = output.to.target.map_or(Tells::Nothing, |target| target.tells);
         Side {
             dialogue: output.to.protocol.dialogue(output.wire.controller),
             estimates: Vec::new(),
@@ -60,11 +60,9 @@ impl Side {
             messages: 0,
             answers: Answers::default(),
             to: output.to.to_string(),
-            must_answer: output.wire.controller.is_some_and(Controller::answers),
+            must_answer: tells != Tells::Nothing,
             lockstep: in_lockstep(output),
-            settling: rest
-                .filter(|_| output.wire.controller.is_some_and(Controller::tells_rest))
-                .map(Settling::new),
+            settling: rest.filter(|_| tells == Tells::Attitude).map(Settling::new),
             notice: None,
             timed: paced || in_lockstep(output),
             baud: None,

@@ -676,6 +676,18 @@ fn msp_sends_a_hundred_packets_a_second_at_most_and_says_what_is_left_out() {
     }
 }
 
+/// Gyro, accel and mag of a frame of an Inertial Labs unit, read by the unit's own description of it.
+fn unit(packet: &Packet) -> [[f64; 3]; 3] {
+    let mut seen = ratetable_protocols::ilabs::data::Repr::default();
+    ratetable_protocols::ilabs::Decoder::new().feed(packet.bytes(), |received| seen = received.unwrap());
+    let frd = |[right, forward, up]: [f64; 3], count: f64| [forward, right, -up].map(|x| x * count);
+    [
+        frd(seen.gyro.unwrap().map(f64::from), 1e-5_f64.to_radians()),
+        frd(seen.accel.unwrap().map(f64::from), 9.8106e-6),
+        frd(seen.mag.unwrap().map(f64::from), 0.01),
+    ]
+}
+
 #[test]
 fn the_last_packet_is_that_of_a_vehicle_that_has_stopped() {
     let text = "[start]\nattitude = \"[30, 10, 90] deg\"\n[[motion]]\nkind = \"rotate\"\n\
@@ -683,7 +695,7 @@ fn the_last_packet_is_that_of_a_vehicle_that_has_stopped() {
                 duration = \"1 s\"\nacceleration = \"[20, 0, 0] m/s^2\"\n";
     let plan: Plan = plan(&format!("{text}{EXACT}"));
     let end = SimTime(NANOS);
-    for protocol in [Protocol::Msp, Protocol::Vectornav, Protocol::Mip] {
+    for protocol in [Protocol::Msp, Protocol::Vectornav, Protocol::Mip, Protocol::Ilabs] {
         let mut encoder = encoder(protocol, &setup(&plan, None));
         let mut packets = Vec::new();
         encoder.farewell(&at_rest(end), &mut packets);
@@ -721,6 +733,7 @@ fn the_last_packet_is_that_of_a_vehicle_that_has_stopped() {
                 let seen = outputs(&packets).0[0];
                 ([seen.gyro, seen.accel, seen.mag.map(|x| 100.0 * x)].map(|v| v.map(f64::from)), 1e-4)
             }
+            Protocol::Ilabs => (unit(&packets[0]), 1e-2),
             _ => {
                 let seen = inertial(&packets)[0];
                 let accel = seen.accel.unwrap().map(|x| x * STANDARD_GRAVITY as f32);

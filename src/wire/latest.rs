@@ -1,13 +1,15 @@
-//! Packets at a fixed rate, each with the newest sample of every sensor: shared by `msp`, `vectornav` and `mip`.
+//! Packets at a fixed rate, each with the newest sample of every sensor: shared by `msp`, `vectornav`,
+//! `mip` and `ilabs`.
 //!
 //! A packet goes out on time whether or not a sample is due. A later sample waits for the next packet, and a sensor
 //! without a new sample repeats its last one, like a unit that holds its output registers.
 
 use super::beat::Beat;
 use super::newest::Told;
-use super::{Newest, Packet, Setup};
+use super::{Newest, Packet, Setup, stopped};
 use crate::earth::SEA_LEVEL_PRESSURE;
 use crate::geometry::{Body, Vector};
+use crate::motion::Truth;
 use crate::schedule::Ticks;
 use crate::sensor::{ByKind, Kinds, Reading, SensorKind};
 use crate::time::{Rate, SimTime};
@@ -68,6 +70,15 @@ impl Latest {
     /// The newest reading of each sensor.
     pub(super) fn newest(&self) -> &Told {
         &self.newest.told
+    }
+
+    /// The newest readings, and of those of these kinds what a vehicle reads that has stopped as it is.
+    pub(super) fn stopped(&self, truth: &Truth, kinds: Kinds) -> Told {
+        let mut still = self.newest.told;
+        for (kind, value) in SensorKind::TRIADS.into_iter().zip(stopped(truth)) {
+            still.put(kind, kinds.contains(kind).then_some(value));
+        }
+        still
     }
 
     /// Samples of each kind that no packet has carried yet.

@@ -2,7 +2,9 @@
 
 use super::dialogue::{Dialogue, Peer};
 use super::row::Row;
-use super::{Controller, Encoder, Now, Options, Packet, Setup, mavlink, mip, mpu, msp, text, vectornav};
+use super::{
+    Controller, Encoder, Now, Options, Packet, Setup, ilabs, mavlink, mip, mpu, msp, sbg, text, vectornav,
+};
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::SimTime;
@@ -21,6 +23,10 @@ pub enum Protocol {
     Vectornav,
     /// MicroStrain inertial packets, for ArduPilot.
     Mip,
+    /// User-defined data of an Inertial Labs unit, for ArduPilot and PX4.
+    Ilabs,
+    /// sbgECom packets of an SBG Systems unit, for ArduPilot.
+    Sbg,
     /// A line of comma-separated values for each reading.
     Csv,
     /// A JSON object for each reading.
@@ -28,17 +34,28 @@ pub enum Protocol {
 }
 
 /// Every protocol's row, in the order of the variants.
-static ROWS: [&Row; 7] =
-    [&mpu::ROW, &mavlink::ROW, &msp::ROW, &vectornav::ROW, &mip::ROW, &text::CSV, &text::JSONL];
+static ROWS: [&Row; 9] = [
+    &mpu::ROW,
+    &mavlink::ROW,
+    &msp::ROW,
+    &vectornav::ROW,
+    &mip::ROW,
+    &ilabs::ROW,
+    &sbg::ROW,
+    &text::CSV,
+    &text::JSONL,
+];
 
 impl Protocol {
     /// Every protocol.
-    pub const ALL: [Protocol; 7] = [
+    pub const ALL: [Protocol; 9] = [
         Protocol::Mpu,
         Protocol::Mavlink,
         Protocol::Msp,
         Protocol::Vectornav,
         Protocol::Mip,
+        Protocol::Ilabs,
+        Protocol::Sbg,
         Protocol::Csv,
         Protocol::Jsonl,
     ];

@@ -9,6 +9,7 @@ mod stream;
 pub use log::Stamps;
 pub use stream::Samples;
 
+use super::mag_unit::MagUnit;
 use crate::geometry::{Axes, Body, Vector};
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
@@ -24,7 +25,8 @@ pub struct Sample {
     /// Which of several sensors of that kind on the link.
     pub source: Source,
     /// When it was taken by the sender's clock, if the packet gives it, in whole µs (text, `vectornav`, `mip`: ns;
-    /// some MAVLink messages: ms). The 32-bit times of `mpu` and `mip` are unwrapped here.
+    /// `ilabs`, some MAVLink messages: ms). A clock that begins again (32 bits of µs, a week)
+    /// goes on here.
     pub t: Option<SimTime>,
     /// The reading. `None` where the packet does not give the scale of its counts (`mpu` before its first config
     /// packet, raw messages, the field in `msp`) or marks them as invalid (an overflow).
@@ -119,6 +121,8 @@ pub struct Assumed {
     pub axes: Axes,
     /// From body to chip axes, of gyro, accel and mag, for the registers of `mpu`.
     pub mounts: [Mount; 3],
+    /// The unit that a field is told in whose protocol does not say it (`sbg`).
+    pub mag: MagUnit,
     /// Whether it is a recording, which may have a stamp before each packet.
     pub recorded: bool,
 }
@@ -126,7 +130,7 @@ pub struct Assumed {
 impl Default for Assumed {
     /// Forward-right-down, and chips with x forward and z up, which is what the encoders use for a plain scene.
     fn default() -> Assumed {
-        Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3], recorded: false }
+        Assumed { axes: Axes::NedFrd, mounts: [Mount::flu(); 3], mag: MagUnit::default(), recorded: false }
     }
 }
 

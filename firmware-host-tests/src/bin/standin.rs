@@ -16,7 +16,7 @@ use ratetable_firmware_host_tests::board::{Device, Port};
 use ratetable_firmware_host_tests::quaternion::to_euler;
 use ratetable_firmware_host_tests::standin::{Clock, Make, Record, Settings, StandIn};
 
-const USAGE: &str = "usage: standin px4|px4-sitl|px4-vectornav|ardupilot|ardupilot-mip|inav PATH (px4-sitl: HOST:PORT) [--baud N] \
+const USAGE: &str = "usage: standin px4|px4-sitl|px4-vectornav|px4-ilabs|ardupilot|ardupilot-mip|ardupilot-ilabs|ardupilot-sbg|inav PATH (px4-sitl: HOST:PORT) [--baud N] \
                      [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N] [--rate HZ] \
                      [--speed TIMES]";
 

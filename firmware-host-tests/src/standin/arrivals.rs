@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ratetable_protocols::{mavlink, mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mavlink, mip, msp, sbg, vectornav};
 
 /// How a link's packets are told apart, by who only counts packets of samples.
 pub enum Framing {
@@ -14,6 +14,10 @@ pub enum Framing {
     Vectornav(Box<vectornav::Decoder>),
     /// A MicroStrain unit's packets.
     Mip(Box<mip::Decoder>),
+    /// An Inertial Labs unit's frames.
+    Ilabs(Box<ilabs::Decoder>),
+    /// An SBG Systems unit's IMU_SHORT.
+    Sbg(Box<sbg::Decoder>),
 }
 
 impl Framing {
@@ -32,6 +36,10 @@ impl Framing {
                 whole |= matches!(received, Ok(vectornav::Packet::Imu(_) | vectornav::Packet::Inertial(_)));
             }),
             Self::Mip(decoder) => decoder.feed(&bytes, |received| whole |= received.is_ok()),
+            Self::Ilabs(decoder) => decoder.feed(&bytes, |received| whole |= received.is_ok()),
+            Self::Sbg(decoder) => decoder.feed(&bytes, |received| {
+                whole |= received.is_ok_and(|received| received.id == sbg::imu_short::ID);
+            }),
         }
         whole
     }

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use ratetable_protocols::{mavlink, mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mavlink, mip, msp, sbg, vectornav};
 
-use super::{Ardupilot, Firmware, Framing, Inav, Mip, Parameters, Px4, Px4Sitl, Px4Vectornav};
+use super::{Ardupilot, Firmware, Framing, Ilabs, Inav, Mip, Parameters, Px4, Px4Sitl, Px4Vectornav, Sbg};
 use crate::ahrs::Kind;
 
 /// A firmware on a kind of link.
@@ -21,6 +21,12 @@ pub enum Make {
     Ardupilot,
     /// ArduPilot with a MicroStrain unit.
     ArdupilotMip,
+    /// ArduPilot with an Inertial Labs unit.
+    ArdupilotIlabs,
+    /// ArduPilot with an SBG Systems unit.
+    ArdupilotSbg,
+    /// PX4 with an Inertial Labs unit.
+    Px4Ilabs,
     /// INAV.
     Inav,
 }
@@ -55,8 +61,17 @@ impl Default for Settings {
 
 impl Make {
     /// Every make.
-    pub const ALL: [Self; 6] =
-        [Self::Px4, Self::Px4Sitl, Self::Px4Vectornav, Self::Ardupilot, Self::ArdupilotMip, Self::Inav];
+    pub const ALL: [Self; 9] = [
+        Self::Px4,
+        Self::Px4Sitl,
+        Self::Px4Vectornav,
+        Self::Ardupilot,
+        Self::ArdupilotMip,
+        Self::ArdupilotIlabs,
+        Self::ArdupilotSbg,
+        Self::Px4Ilabs,
+        Self::Inav,
+    ];
 
     /// As it is called.
     pub const fn name(self) -> &'static str {
@@ -66,6 +81,9 @@ impl Make {
             Self::Px4Vectornav => "px4-vectornav",
             Self::Ardupilot => "ardupilot",
             Self::ArdupilotMip => "ardupilot-mip",
+            Self::ArdupilotIlabs => "ardupilot-ilabs",
+            Self::ArdupilotSbg => "ardupilot-sbg",
+            Self::Px4Ilabs => "px4-ilabs",
             Self::Inav => "inav",
         }
     }
@@ -78,6 +96,9 @@ impl Make {
             Self::Px4Vectornav => Box::new(Px4Vectornav::new(settings)),
             Self::Ardupilot => Box::new(Ardupilot::new(settings)),
             Self::ArdupilotMip => Box::new(Mip::new(settings)),
+            Self::ArdupilotIlabs => Box::new(Ilabs::ardupilot(settings)),
+            Self::ArdupilotSbg => Box::new(Sbg::new(settings)),
+            Self::Px4Ilabs => Box::new(Ilabs::px4(settings)),
             Self::Inav => Box::new(Inav::new(settings)),
         }
     }
@@ -88,6 +109,8 @@ impl Make {
             Self::Px4 | Self::Px4Sitl => Framing::Mavlink(Box::new(mavlink::Decoder::new())),
             Self::Px4Vectornav | Self::Ardupilot => Framing::Vectornav(Box::new(vectornav::Decoder::new())),
             Self::ArdupilotMip => Framing::Mip(Box::new(mip::Decoder::new())),
+            Self::ArdupilotIlabs | Self::Px4Ilabs => Framing::Ilabs(Box::new(ilabs::Decoder::new())),
+            Self::ArdupilotSbg => Framing::Sbg(Box::new(sbg::Decoder::new())),
             Self::Inav => Framing::Msp(Box::new(msp::Decoder::new())),
         }
     }

@@ -10,20 +10,22 @@ use core::panic::PanicInfo;
 
 use ratetable_protocols::mavlink::{self, Header, Message, Version, system_time};
 use ratetable_protocols::mpu::{self, Packet, gyro};
-use ratetable_protocols::{mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mip, msp, sbg, vectornav};
 
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     loop {}
 }
 
-/// Writes a packet of each format and reads it back: 5 if all came back.
+/// Writes a packet of each format and reads it back: 7 if all came back.
 pub extern "C" fn round_trips(count: u32) -> u32 {
     mpu_round_trip(count)
         + mavlink_round_trip(count)
         + msp_round_trip(count)
         + vectornav_round_trip(count)
         + mip_round_trip(count)
+        + ilabs_round_trip(count)
+        + sbg_round_trip(count)
 }
 
 /// Keeps the function in the library without a name of the system's own.
@@ -93,6 +95,28 @@ fn mip_round_trip(count: u32) -> u32 {
     let mut back = 0;
     if let Ok(len) = mip::encode(&imu, &mut bytes) {
         mip::Decoder::new().feed(&bytes[..len], |received| back += u32::from(received == Ok(imu)));
+    }
+    back
+}
+
+fn ilabs_round_trip(count: u32) -> u32 {
+    let mut bytes = [0; ilabs::MAX_LEN];
+    let told = ilabs::data::Repr { time_ms: Some(count), ..Default::default() };
+    let mut back = 0;
+    if let Ok(len) = ilabs::encode(&told, &mut bytes) {
+        ilabs::Decoder::new().feed(&bytes[..len], |received| back += u32::from(received == Ok(told)));
+    }
+    back
+}
+
+fn sbg_round_trip(count: u32) -> u32 {
+    let mut bytes = [0; sbg::MAX_LEN];
+    let packet = sbg::Packet::ImuShort(sbg::imu_short::Repr { time_us: count, ..Default::default() });
+    let mut back = 0;
+    if let Ok(len) = sbg::encode(&packet, &mut bytes) {
+        sbg::Decoder::new().feed(&bytes[..len], |received| {
+            back += u32::from(received.is_ok_and(|received| received.packet == Some(packet)));
+        });
     }
     back
 }

@@ -2,7 +2,7 @@
 
 use ratetable_protocols::mavlink::{self, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
-use ratetable_protocols::{mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mip, msp, sbg, vectornav};
 use serde_json::Value;
 
 /// One golden packet: its JSON and its bytes.
@@ -352,6 +352,75 @@ pub fn vectornav_packet(json: &Value) -> vectornav::Packet {
         "line" => {
             let text = f["text"].as_str().unwrap();
             vectornav::Packet::Line(vectornav::line::Line::new(text).unwrap())
+        }
+        other => panic!("no packet type {other}"),
+    }
+}
+
+/// The `ilabs` frame that a vector describes: what it lacks is not told.
+pub fn ilabs_frame(json: &Value) -> ilabs::data::Repr {
+    use ilabs::data::{Angles, Pressure};
+    let f = |name: &str| json["fields"].get(name);
+    ilabs::data::Repr {
+        time_ms: f("time_ms").map(int),
+        accel: f("accel").map(ints),
+        gyro: f("gyro").map(ints),
+        pressure: f("pressure").map(|it| Pressure { half_pascals: int(&it[0]), altitude: int(&it[1]) }),
+        mag: f("mag").map(ints),
+        attitude: f("attitude").map(|it| Angles { yaw: int(&it[0]), pitch: int(&it[1]), roll: int(&it[2]) }),
+        status: f("status").map(int),
+        status_2: f("status_2").map(int),
+        temperature: f("temperature").map(int),
+    }
+}
+
+/// The `sbg` packet that a vector describes.
+pub fn sbg_packet(json: &Value) -> sbg::Packet {
+    let f = &json["fields"];
+    match json["type"].as_str().unwrap() {
+        "imu_short" => sbg::Packet::ImuShort(sbg::imu_short::Repr {
+            time_us: int(&f["time_us"]),
+            status: int(&f["status"]),
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            temperature: int(&f["temperature"]),
+        }),
+        "mag" => sbg::Packet::Mag(sbg::mag::Repr {
+            time_us: int(&f["time_us"]),
+            status: int(&f["status"]),
+            field: floats(&f["field"]),
+            accel: floats(&f["accel"]),
+        }),
+        "air_data" => sbg::Packet::AirData(sbg::air_data::Repr {
+            time_us: int(&f["time_us"]),
+            status: int(&f["status"]),
+            pressure: float(&f["pressure"]),
+            altitude: float(&f["altitude"]),
+            differential_pressure: float(&f["differential_pressure"]),
+            airspeed: float(&f["airspeed"]),
+            temperature: float(&f["temperature"]),
+        }),
+        "quat" => sbg::Packet::Quat(sbg::quat::Repr {
+            time_us: int(&f["time_us"]),
+            wxyz: floats(&f["wxyz"]),
+            uncertainty: floats(&f["uncertainty"]),
+            status: int(&f["status"]),
+        }),
+        "info_request" => sbg::Packet::InfoRequest,
+        "info" => {
+            let mut product = [0; 32];
+            let name = f["product"].as_str().unwrap().as_bytes();
+            product[..name.len()].copy_from_slice(name);
+            sbg::Packet::Info(sbg::info::Repr {
+                product,
+                serial: int(&f["serial"]),
+                calibration: int(&f["calibration"]),
+                year: int(&f["year"]),
+                month: int(&f["month"]),
+                day: int(&f["day"]),
+                hardware: int(&f["hardware"]),
+                firmware: int(&f["firmware"]),
+            })
         }
         other => panic!("no packet type {other}"),
     }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use ratetable_protocols::mavlink::{self, Header, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
-use ratetable_protocols::{Error, cobs, mip, msp, vectornav};
+use ratetable_protocols::{Error, cobs, ilabs, mip, msp, sbg, vectornav};
 
 fn any_packet() -> impl Strategy<Value = Packet> {
     prop_oneof![
@@ -128,9 +128,50 @@ fn any_time() -> impl Strategy<Value = mip::imu::Time> {
     ]
 }
 
+/// Any frame that tells something.
+fn any_ilabs() -> impl Strategy<Value = ilabs::data::Repr> {
+    use ilabs::data::{Angles, Pressure, Repr};
+    let pressure = any::<Option<(u16, i32)>>()
+        .prop_map(|it| it.map(|(half_pascals, altitude)| Pressure { half_pascals, altitude }));
+    let attitude = any::<Option<(u16, i16, i16)>>()
+        .prop_map(|it| it.map(|(yaw, pitch, roll)| Angles { yaw, pitch, roll }));
+    let vectors = any::<(Option<[i32; 3]>, Option<[i32; 3]>, Option<[i16; 3]>)>();
+    let words = any::<(Option<u32>, Option<u16>, Option<u16>, Option<i16>)>();
+    (vectors, words, pressure, attitude)
+        .prop_map(|((accel, gyro, mag), (time_ms, status, status_2, temperature), pressure, attitude)| Repr {
+            time_ms,
+            accel,
+            gyro,
+            pressure,
+            mag,
+            attitude,
+            status,
+            status_2,
+            temperature,
+        })
+        .prop_filter("a frame tells something", |frame| *frame != Repr::default())
+}
+
+/// Any packet, made from any payload without not-a-number.
+#[allow(clippy::eq_op, reason = "not-a-number is what is not equal to itself")]
+fn any_sbg() -> impl Strategy<Value = sbg::Packet> {
+    use sbg::{air_data, imu_short, info, mag, quat};
+    let kinds = [
+        (imu_short::CLASS, imu_short::ID, imu_short::LEN),
+        (mag::CLASS, mag::ID, mag::LEN),
+        (air_data::CLASS, air_data::ID, air_data::LEN),
+        (quat::CLASS, quat::ID, quat::LEN),
+        (info::CLASS, info::ID, info::LEN),
+        (info::CLASS, info::ID, 0),
+    ];
+    (select(kinds.to_vec()), vec(any::<u8>(), sbg::MAX_LEN))
+        .prop_map(|((class, id, len), bytes)| sbg::Packet::parse(class, id, &bytes[..len]).unwrap().unwrap())
+        .prop_filter("not-a-number is not equal to itself", |packet| packet == packet)
+}
+
 /// Bytes among which many look like the start of a packet.
 fn rubbish() -> impl Strategy<Value = Vec<u8>> {
-    let starts = select(b"$X<>!\xfa\x01\x21\x07ue\x80*\r\nVN".to_vec());
+    let starts = select(b"$X<>!\xfa\x01\x21\x07ue\x80*\r\nVN\xaa\x55\x95\xff\x5a\x33".to_vec());
     vec(prop_oneof![any::<u8>(), starts, Just(0)], 0..1500)
 }
 
@@ -279,6 +320,88 @@ proptest! {
     }
 
     #[test]
+    fn ilabs_frames_come_back_however_the_stream_is_cut(frames in vec(any_ilabs(), 1..10), cut in 1_usize..100) {
+        let mut stream = Vec::new();
+        for frame in &frames {
+            let mut out = [0; ilabs::MAX_LEN];
+            let len = ilabs::encode(frame, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = ilabs::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap()));
+        }
+        prop_assert_eq!(back, frames);
+    }
+
+    #[test]
+    fn sbg_packets_come_back_however_the_stream_is_cut(packets in vec(any_sbg(), 1..10), cut in 1_usize..100) {
+        let mut stream = Vec::new();
+        for packet in &packets {
+            let mut out = [0; sbg::MAX_LEN];
+            let len = sbg::encode(packet, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = sbg::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap().packet.unwrap()));
+        }
+        prop_assert_eq!(back, packets);
+    }
+
+    #[test]
+    fn an_sbg_packet_is_found_behind_any_bytes(
+        rubbish in rubbish(),
+        whole in vec(any_sbg(), 0..3),
+        packet in any_sbg(),
+    ) {
+        // Pieces of packets among the bytes, so that starts and lengths are right and checksums are not.
+        let mut stream = rubbish;
+        for packet in &whole {
+            let mut out = [0; sbg::MAX_LEN];
+            let len = sbg::encode(packet, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len - len / 3]);
+        }
+        let mut out = [0; sbg::MAX_LEN];
+        let len = sbg::encode(&packet, &mut out).unwrap();
+        stream.extend_from_slice(&out[..len]);
+        let mut found = false;
+        let mut on = |received: Result<sbg::Received, Error>| {
+            found |= received.is_ok_and(|received| received.packet == Some(packet));
+        };
+        let mut decoder = sbg::Decoder::new();
+        decoder.feed(&stream, &mut on);
+        decoder.finish(&mut on);
+        prop_assert!(found);
+    }
+
+    #[test]
+    fn what_a_unit_tells_is_found_behind_any_bytes(
+        rubbish in rubbish(),
+        whole in vec(any_ilabs(), 0..3),
+        told in any_ilabs(),
+    ) {
+        // Whole frames and pieces of them among the bytes, so that starts and lengths are right and sums are not.
+        let mut stream = rubbish;
+        for frame in &whole {
+            let mut out = [0; ilabs::MAX_LEN];
+            let len = ilabs::encode(frame, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len - len / 3]);
+        }
+        let mut out = [0; ilabs::MAX_LEN];
+        let len = ilabs::encode(&told, &mut out).unwrap();
+        stream.extend_from_slice(&out[..len]);
+        let mut found = false;
+        let mut on = |received: Result<ilabs::data::Repr, Error>| found |= received == Ok(told);
+        let mut decoder = ilabs::Decoder::new();
+        decoder.feed(&stream, &mut on);
+        decoder.finish(&mut on);
+        prop_assert!(found);
+    }
+
+    #[test]
     fn controllers_bytes_do_not_panic_and_the_packet_behind_them_is_found(
         rubbish in rubbish(),
         frame in any_frame(),
@@ -360,6 +483,12 @@ proptest! {
         if let Ok(fields) = mip::imu::Payload::new_checked(&bytes) {
             let _ = mip::imu::Repr::parse(&fields);
         }
+        if let Ok(told) = ilabs::data::Payload::new_checked(&bytes) {
+            let _ = ilabs::data::Repr::parse(&told);
+        }
+        for class in [sbg::LOG, sbg::COMMAND, kind] {
+            let _ = sbg::Packet::parse(class, id as u8, &bytes);
+        }
         let mut short = [0; 20];
         let _ = cobs::decode(&bytes, &mut short);
         let _ = cobs::encode(&bytes, &mut short);
@@ -386,10 +515,14 @@ proptest! {
         frame in any_frame(),
         packet in any_vectornav(),
         inertial in any_mip(),
+        told in any_ilabs(),
+        unit in any_sbg(),
     ) {
         needs_its_length(|out| msp::encode(&frame, out))?;
         needs_its_length(|out| vectornav::encode(&packet, out))?;
         needs_its_length(|out| mip::encode(&inertial, out))?;
+        needs_its_length(|out| ilabs::encode(&told, out))?;
+        needs_its_length(|out| sbg::encode(&unit, out))?;
     }
 }
 

@@ -1,10 +1,10 @@
 //! Golden packets made by other implementations, both ways, and shown by the documentation.
 
 use super::common::{
-    int, mavlink_header, mavlink_message, mip_packet, mpu_packet, msp_direction, msp_message,
-    vectornav_packet, vectors,
+    ilabs_frame, int, mavlink_header, mavlink_message, mip_packet, mpu_packet, msp_direction, msp_message,
+    sbg_packet, vectornav_packet, vectors,
 };
-use ratetable_protocols::{mavlink, mip, mpu, msp, vectornav};
+use ratetable_protocols::{ilabs, mavlink, mip, mpu, msp, sbg, vectornav};
 
 #[test]
 fn mpu_packets_are_the_golden_bytes() {
@@ -101,6 +101,33 @@ fn mip_packets_are_the_golden_bytes_and_back() {
 }
 
 #[test]
+fn ilabs_frames_are_the_golden_bytes_and_back() {
+    for vector in vectors("ilabs") {
+        let frame = ilabs_frame(&vector.json);
+        let mut out = [0xee; ilabs::MAX_LEN];
+        let len = ilabs::encode(&frame, &mut out).unwrap();
+        assert_eq!(out[..len], vector.bytes, "{}", vector.name());
+        let mut seen = Vec::new();
+        ilabs::Decoder::new().feed(&vector.bytes, |received| seen.push(received));
+        assert_eq!(seen, [Ok(frame)], "{}", vector.name());
+    }
+}
+
+#[test]
+fn sbg_packets_are_the_golden_bytes_and_back() {
+    for vector in vectors("sbg") {
+        let packet = sbg_packet(&vector.json);
+        let mut out = [0xee; sbg::MAX_LEN];
+        let len = sbg::encode(&packet, &mut out).unwrap();
+        assert_eq!(out[..len], vector.bytes, "{}", vector.name());
+        let (class, id) = packet.kind();
+        let mut seen = Vec::new();
+        sbg::Decoder::new().feed(&vector.bytes, |received| seen.push(received));
+        assert_eq!(seen, [Ok(sbg::Received { class, id, packet: Some(packet) })], "{}", vector.name());
+    }
+}
+
+#[test]
 fn every_golden_packet_with_one_bit_flipped_is_refused() {
     for vector in vectors("mpu") {
         flip_every_bit(&vector.bytes, |hurt| {
@@ -155,6 +182,22 @@ fn every_golden_packet_with_one_bit_flipped_is_refused() {
             decoder.finish(refuse);
         });
     }
+    for vector in vectors("ilabs") {
+        flip_every_bit(&vector.bytes, |hurt| {
+            let refuse = |received: Result<_, _>| assert!(received.is_err());
+            let mut decoder = ilabs::Decoder::new();
+            decoder.feed(hurt, refuse);
+            decoder.finish(refuse);
+        });
+    }
+    for vector in vectors("sbg") {
+        flip_every_bit(&vector.bytes, |hurt| {
+            let refuse = |received: Result<_, _>| assert!(received.is_err());
+            let mut decoder = sbg::Decoder::new();
+            decoder.feed(hurt, refuse);
+            decoder.finish(refuse);
+        });
+    }
 }
 
 fn flip_every_bit(bytes: &[u8], mut check: impl FnMut(&[u8])) {
@@ -167,7 +210,7 @@ fn flip_every_bit(bytes: &[u8], mut check: impl FnMut(&[u8])) {
 
 #[test]
 fn the_documentation_shows_every_vector() {
-    for format in ["mpu", "mavlink", "msp", "vectornav", "mip"] {
+    for format in ["mpu", "mavlink", "msp", "vectornav", "mip", "ilabs", "sbg"] {
         let path = format!("{}/../docs/wire/{format}.md", env!("CARGO_MANIFEST_DIR"));
         let page = std::fs::read_to_string(&path).unwrap();
         for vector in vectors(format) {

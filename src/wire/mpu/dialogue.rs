@@ -3,6 +3,7 @@
 use crate::geometry::Attitude;
 use crate::time::SimTime;
 use crate::wire::dialogue::{Dialogue, Estimate, Said, Stamp};
+use crate::wire::wrap::{MICROS_32, unwrapped};
 use glam::DQuat;
 use ratetable_protocols::mpu;
 
@@ -24,7 +25,7 @@ impl Dialogue for Answers {
         let Answers { decoder, newest, damaged } = self;
         decoder.feed(bytes, |received| match received {
             Ok(mpu::Received { t_us, packet: mpu::Packet::Attitude(answer), .. }) => {
-                *newest = unwrapped(t_us, *newest);
+                *newest = unwrapped(i64::from(t_us) * 1000, MICROS_32, *newest);
                 let [w, x, y, z] = answer.q.map(f64::from);
                 let q = DQuat::from_xyzw(x, y, z, w);
                 if q.length_squared() > 0.25 && q.is_finite() {
@@ -41,33 +42,5 @@ impl Dialogue for Answers {
 
     fn damaged(&self) -> u64 {
         self.damaged
-    }
-}
-
-/// The time whose microseconds are `t_us` modulo 2³² and which is nearest to `near`, but not negative.
-pub(super) fn unwrapped(t_us: u32, near: SimTime) -> SimTime {
-    let near_us = near.0 / 1000;
-    let ahead = t_us.wrapping_sub(near_us as u32) as i32;
-    let nearest = near_us + i64::from(ahead);
-    SimTime(if nearest < 0 { nearest + (1 << 32) } else { nearest } * 1000)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_goes_on_when_its_32_bits_wrap() {
-        let mut t = SimTime::ZERO;
-        for minute in 0..300i64 {
-            let us = minute * 60_000_000;
-            t = unwrapped(us as u32, t);
-            assert_eq!(t.0, us * 1000);
-        }
-        assert_eq!(
-            unwrapped(4_294_000_000, SimTime(4_295_000_000_000)).0,
-            4_294_000_000_000,
-            "and back a little"
-        );
     }
 }

@@ -1,11 +1,11 @@
 //! `mpu`: registers to readings, by the scales of the newest config packet.
 
-use super::dialogue::unwrapped;
 use crate::earth::STANDARD_GRAVITY;
 use crate::geometry::Vector;
 use crate::sensor::{Mount, SensorKind};
 use crate::time::SimTime;
 use crate::wire::samples::{self, Carrier, Counts, Sample, Sensed, Source};
+use crate::wire::wrap::{MICROS_32, unwrapped};
 use ratetable_protocols::Losses;
 use ratetable_protocols::mpu::registers::{self, ST1_DATA_READY, ST2_16_BIT, ST2_OVERFLOW};
 use ratetable_protocols::mpu::{Decoder, Packet, Received, config, mag};
@@ -36,7 +36,7 @@ impl samples::Reader for Reader {
                 return counts.foreign("attitude");
             }
             let first = SimTime(i64::from(t_us) * 1000);
-            let t = newest.map_or(first, |newest| unwrapped(t_us, newest));
+            let t = newest.map_or(first, |newest| unwrapped(first.0, MICROS_32, newest));
             *newest = Some(t);
             let carrier = Carrier { lost: Some(losses.lost()), ..Carrier::default() };
             let mut sample = |kind: SensorKind, chip: Option<[f64; 3]>| {

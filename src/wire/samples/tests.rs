@@ -40,7 +40,7 @@ mount = "luf"
 fn assumed(plan: &Plan) -> Assumed {
     let mount = |kind| plan.sensors.iter().find(|sensor| sensor.kind == kind).and_then(|sensor| sensor.mount);
     let mounts = SensorKind::TRIADS.map(|kind| mount(kind).unwrap_or(Mount::flu()));
-    Assumed { axes: plan.axes, mounts, recorded: false }
+    Assumed { axes: plan.axes, mounts, ..Assumed::default() }
 }
 
 /// Everything in these bytes, fed in pieces of `piece` bytes.
@@ -60,10 +60,15 @@ fn bytes(packets: &[Packet]) -> Vec<u8> {
 fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
     let count = [1f64.to_radians() / 16.4, crate::earth::STANDARD_GRAVITY / 2048.0, 0.15][kind as usize];
     let msp = [1f64.to_radians() / 16.0, 1e-3 * crate::earth::STANDARD_GRAVITY, 0.0][kind as usize];
+    // A millionth of a g of 9.8106 m/s², a hundred thousandth of a degree, ten nanotesla.
+    let ilabs = [1e-5_f64.to_radians(), 9.8106e-6, 0.01][kind as usize];
     match protocol {
+        Protocol::Ilabs => 0.5 * ilabs * (1.0 + 1e-6),
+        Protocol::Sbg if kind == SensorKind::Gyro => 0.5 / 67_108_864.0 * (1.0 + 1e-6),
+        Protocol::Sbg if kind == SensorKind::Accel => 0.5 / 1_048_576.0 * (1.0 + 1e-6),
         Protocol::Mpu => 0.5 * count * (1.0 + 1e-9),
         Protocol::Msp => 0.5 * msp * (1.0 + 1e-9),
-        Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip => {
+        Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip | Protocol::Sbg => {
             2.0 * reading.abs() * f64::from(f32::EPSILON)
         }
         Protocol::Csv | Protocol::Jsonl => 0.0,
@@ -80,8 +85,9 @@ fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample
         }
         for ((t, reading), sample) in sent.into_iter().zip(came) {
             let unit = match protocol {
-                Protocol::Mpu | Protocol::Mavlink => Some(1000),
+                Protocol::Mpu | Protocol::Mavlink | Protocol::Sbg => Some(1000),
                 Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => Some(1),
+                Protocol::Ilabs => Some(1_000_000),
                 Protocol::Msp | Protocol::Mip => None,
             };
             if sample.t != unit.map(|unit| SimTime(t.0 / unit * unit)) {
@@ -110,12 +116,15 @@ fn every_sample_comes_back_with_its_time_and_value() {
     for plan in scenes.iter().chain(&turned).map(|text| plan(text)) {
         for protocol in Protocol::ALL {
             let (packets, readings) = play(&plan, protocol, None);
-            // In MAVLink a sensor's sample leaves at the next tick of the gyro: compare where both tick.
-            if protocol == Protocol::Mavlink && plan.sensors[1].rate != plan.sensors[0].rate {
+            // In these a sensor's sample leaves at the next tick of the gyro: compare where both tick.
+            if matches!(protocol, Protocol::Mavlink | Protocol::Sbg)
+                && plan.sensors[1].rate != plan.sensors[0].rate
+            {
                 continue;
             }
             // These carry every sensor in every packet, at most 100 times a second: compare where all are new.
-            let tells_all = matches!(protocol, Protocol::Msp | Protocol::Vectornav | Protocol::Mip);
+            let tells_all =
+                matches!(protocol, Protocol::Msp | Protocol::Vectornav | Protocol::Mip | Protocol::Ilabs);
             if tells_all && plan.sensors[2].rate != Rate::hz(100) {
                 continue;
             }
@@ -467,7 +476,7 @@ fn fields_of_mip_that_tell_a_time_are_the_times_of_its_samples() {
 #[test]
 fn damage_to_a_packet_without_a_number_costs_it_and_is_counted() {
     let plan = plan(TOGETHER);
-    for protocol in [Protocol::Msp, Protocol::Vectornav, Protocol::Mip] {
+    for protocol in [Protocol::Msp, Protocol::Vectornav, Protocol::Mip, Protocol::Ilabs] {
         let packets = &play(&plan, protocol, None).0[..16];
         let whole = read(Samples::new(protocol), &bytes(packets), 64).0;
         for hurt in [1, 4] {

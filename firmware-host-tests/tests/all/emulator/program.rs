@@ -113,22 +113,22 @@ fn px4_on_a_slow_link_is_told_of_with_the_parameter_to_change_and_is_exit_code_2
 
 #[test]
 fn a_stand_in_reads_all_of_a_stream() {
-    let arguments = [
-        "run",
-        "still",
-        "--for",
-        "2s",
-        "--to",
-        "mip@pty",
-        "--speed",
-        "max",
-        "--",
-        STANDIN,
-        "ardupilot-mip",
-        "{}",
-    ];
-    let output = Command::new(&*RATETABLE).args(arguments).output().expect("the program starts");
-    let said = assert_code(&output, 0);
-    // Two seconds at 1 kHz, and the vehicle that has stopped.
-    assert!(said.contains("2001 packets, 0 damaged") && said.contains("samples: 2001 used"), "{said}");
+    // Two seconds at 1 kHz, and the vehicle that has stopped; with sbgECom a magnetometer at 100 Hz that is a sample of
+    // the accelerometer too, and packets without samples, among them an answer that may come late.
+    // The rest before the scene is of whole seconds.
+    for (to, standin, rest, samples, a_second) in [
+        ("mip@pty", "ardupilot-mip", 0, 2001, 1000),
+        ("ilabs@pty", "ardupilot-ilabs", 10, 2001, 1000),
+        ("sbg@pty", "ardupilot-sbg", 10, 2001 + 201, 1100),
+    ] {
+        let arguments =
+            ["run", "still", "--for", "2s", "--to", to, "--speed", "max", "--", STANDIN, standin, "{}"];
+        let output = Command::new(&*RATETABLE).args(arguments).output().expect("the program starts");
+        let said = assert_code(&output, 0);
+        assert!(said.contains(" packets, 0 damaged"), "{to}: {said}");
+        let used = said.split("samples: ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a count");
+        let more = used.parse::<u64>().expect("a count") - samples;
+        assert_eq!(more % a_second, 0, "{to}: {said}");
+        assert!(more / a_second >= rest && (rest > 0 || more == 0), "{to}: {said}");
+    }
 }

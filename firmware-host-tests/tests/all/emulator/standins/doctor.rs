@@ -1,7 +1,7 @@
 //! Changes what packets of samples say, whatever their protocol.
 
 use ratetable_firmware_host_tests::standin::Make;
-use ratetable_protocols::{mavlink, mip, msp, vectornav};
+use ratetable_protocols::{ilabs, mavlink, mip, msp, sbg, vectornav};
 
 /// Gyro, accel and mag as they stand in a packet.
 pub type Vectors = [[f64; 3]; 3];
@@ -53,6 +53,8 @@ pub fn doctor(make: Make, packet: &[u8], change: &mut dyn FnMut(&mut Vectors)) -
             let len = mip::encode(&it, &mut bytes).unwrap();
             changed = Some(bytes[..len].to_vec());
         }),
+        Make::ArdupilotIlabs | Make::Px4Ilabs => changed = frame(packet, change),
+        Make::ArdupilotSbg => changed = unit(packet, change),
         Make::Inav => {
             changed = simulator(packet, |it| {
                 let mut vectors = [it.gyro, it.accel, it.mag].map(|vector| vector.map(f64::from));
@@ -83,6 +85,49 @@ pub fn simulator(packet: &[u8], change: impl FnOnce(&mut msp::simulator::Repr)) 
     change(&mut it);
     let mut bytes = [0; msp::MAX_LEN];
     let len = msp::encode(&msp::Message::Simulator(it), &mut bytes).unwrap();
+    Some(bytes[..len].to_vec())
+}
+
+/// A frame of an Inertial Labs unit changed, its vectors as forward, right, down; `None` of any other.
+fn frame(packet: &[u8], change: &mut dyn FnMut(&mut Vectors)) -> Option<Vec<u8>> {
+    let mut told = None;
+    ilabs::Decoder::new().feed(packet, |received| told = received.ok());
+    let mut it = told?;
+    // Its own inverse.
+    let turned = |[x, y, z]: [f64; 3]| [y, x, -z];
+    let counts = [it.gyro?.map(f64::from), it.accel?.map(f64::from), it.mag?.map(f64::from)];
+    let mut vectors = counts.map(turned);
+    change(&mut vectors);
+    let [gyro, accel, mag] = vectors.map(turned);
+    it.gyro = Some(gyro.map(|count| count.round() as i32));
+    it.accel = Some(accel.map(|count| count.round() as i32));
+    it.mag = Some(mag.map(|count| count.round() as i16));
+    let mut bytes = [0; ilabs::MAX_LEN];
+    let len = ilabs::encode(&it, &mut bytes).unwrap();
+    Some(bytes[..len].to_vec())
+}
+
+/// A packet of an SBG Systems unit changed: IMU_SHORT has no field and MAG no gyro; `None` of any other.
+fn unit(packet: &[u8], change: &mut dyn FnMut(&mut Vectors)) -> Option<Vec<u8>> {
+    let mut told = None;
+    sbg::Decoder::new().feed(packet, |received| told = received.ok().and_then(|received| received.packet));
+    let changed = match told? {
+        sbg::Packet::ImuShort(mut it) => {
+            let mut vectors = [it.gyro.map(f64::from), it.accel.map(f64::from), [0.0; 3]];
+            change(&mut vectors);
+            [it.gyro, it.accel] = [vectors[0], vectors[1]].map(|v| v.map(|count| count.round() as i32));
+            sbg::Packet::ImuShort(it)
+        }
+        sbg::Packet::Mag(mut it) => {
+            let mut vectors = [[0.0; 3], it.accel.map(f64::from), it.field.map(f64::from)];
+            change(&mut vectors);
+            [it.accel, it.field] = [vectors[1], vectors[2]].map(|v| v.map(|c| c as f32));
+            sbg::Packet::Mag(it)
+        }
+        _ => return None,
+    };
+    let mut bytes = [0; sbg::MAX_LEN];
+    let len = sbg::encode(&changed, &mut bytes).unwrap();
     Some(bytes[..len].to_vec())
 }
 

@@ -3,7 +3,7 @@
 use ratetable_firmware_host_tests::quaternion::{from_euler, mul};
 use ratetable_firmware_host_tests::standin::Make;
 use ratetable_protocols::mavlink::{self, Header, Message, Version, hil_state_quaternion};
-use ratetable_protocols::{msp, vectornav};
+use ratetable_protocols::{ilabs, msp, sbg, vectornav};
 
 use super::doctor::{Vectors, doctor, encoded, simulator};
 use super::follow::BOUND_DEG;
@@ -43,6 +43,35 @@ fn lying_navigation(stream: Stream) -> Stream {
     stream.into_iter().map(|(at, packet)| (at, lie(packet))).collect()
 }
 
+/// The frames of a stream with an attitude far off.
+fn lying_ilabs(stream: Stream) -> Stream {
+    let lie = |packet: Vec<u8>| {
+        let mut told = None;
+        ilabs::Decoder::new().feed(&packet, |received| told = received.ok());
+        let Some(mut frame) = told else { return packet };
+        frame.attitude = Some(ilabs::data::Angles { yaw: 12_345, pitch: -6000, roll: 17_000 });
+        let mut bytes = [0; ilabs::MAX_LEN];
+        let len = ilabs::encode(&frame, &mut bytes).unwrap();
+        bytes[..len].to_vec()
+    };
+    stream.into_iter().map(|(at, packet)| (at, lie(packet))).collect()
+}
+
+/// The QUAT packets of a stream with an attitude far off.
+fn lying_sbg(stream: Stream) -> Stream {
+    let lie = |packet: Vec<u8>| {
+        let mut told = None;
+        sbg::Decoder::new()
+            .feed(&packet, |received| told = received.ok().and_then(|received| received.packet));
+        let Some(sbg::Packet::Quat(quat)) = told else { return packet };
+        let mut bytes = [0; sbg::MAX_LEN];
+        let lie = sbg::quat::Repr { wxyz: [0.5; 4], status: 0x32, ..quat };
+        let len = sbg::encode(&sbg::Packet::Quat(lie), &mut bytes).unwrap();
+        bytes[..len].to_vec()
+    };
+    stream.into_iter().map(|(at, packet)| (at, lie(packet))).collect()
+}
+
 /// A stream with a false state told beside every fifth packet.
 fn lying_mavlink(stream: Stream) -> Stream {
     let mut with = Vec::new();
@@ -75,9 +104,12 @@ const FLAGS: u8 =
 
 #[test]
 fn a_false_attitude_beside_the_samples_changes_no_estimate() {
-    let lies: [(Make, Lie); 5] = [
+    let lies: [(Make, Lie); 8] = [
         (Make::Px4Vectornav, lying_navigation),
+        (Make::ArdupilotSbg, lying_sbg),
         (Make::Ardupilot, lying_vectornav),
+        (Make::ArdupilotIlabs, lying_ilabs),
+        (Make::Px4Ilabs, lying_ilabs),
         (Make::Px4, lying_mavlink),
         (Make::Px4Sitl, lying_mavlink),
         (Make::Inav, |stream| lying_msp(stream, FLAGS)),
@@ -152,9 +184,9 @@ fn packets_with_another_checksum_seed_are_all_refused() {
         let plan = ratetable::scene::Plan::load("level-then-turn", &set("duration=1 s", case)).unwrap();
         let told = converse(case, &plan, &settings(case, &plan), |stream, _| {
             let reseeded = stream.into_iter().map(|(at, mut packet)| {
-                if let Some(last) = packet.last_mut() {
-                    *last ^= 0x5a;
-                }
+                // Of sbgECom the last byte is no checksum.
+                let last = packet.len() - if case.make == Make::ArdupilotSbg { 2 } else { 1 };
+                packet[last] ^= 0x5a;
                 (at, packet)
             });
             reseeded.collect()

@@ -36,8 +36,10 @@ pub struct Case {
 
 const SCENE_HZ: u64 = 4_000;
 
+const SCENE_200: &[&str] = &["gyro.rate=200 Hz", "accel.rate=200 Hz"];
+
 /// Every stand-in with the target that is made for it; a MicroStrain unit has none.
-pub const CASES: [Case; 6] = [
+pub const CASES: [Case; 9] = [
     Case { make: Make::Px4, to: "px4@pty", sets: &[], period_us: SCENE_HZ, rest_s: 6 },
     Case { make: Make::Px4Sitl, to: "px4-sitl@tcpin:0", sets: &[], period_us: SCENE_HZ, rest_s: 2 },
     Case {
@@ -55,6 +57,9 @@ pub const CASES: [Case; 6] = [
         rest_s: 5,
     },
     Case { make: Make::ArdupilotMip, to: "mip@pty", sets: &[], period_us: SCENE_HZ, rest_s: 5 },
+    Case { make: Make::ArdupilotIlabs, to: "ilabs@pty", sets: SCENE_200, period_us: 5_000, rest_s: 10 },
+    Case { make: Make::ArdupilotSbg, to: "sbg@pty", sets: SCENE_200, period_us: 5_000, rest_s: 10 },
+    Case { make: Make::Px4Ilabs, to: "px4-ilabs@pty", sets: SCENE_200, period_us: 5_000, rest_s: 10 },
     Case {
         make: Make::Inav,
         to: "inav@pty",
