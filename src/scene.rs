@@ -222,6 +222,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     let mut outputs = output::outputs(&top, sensors.complete.then_some(&sensors.plans));
     let trajectory =
         Trajectory::new(start.attitude, motions.motions, forces.forces, earth.gravity, earth.field);
+    let trajectory = trajectory.in_wind(earth.wind);
     let trajectory = match start.velocity {
         Some(velocity) => trajectory.begun_at(velocity),
         None => trajectory,

@@ -69,6 +69,8 @@ pub struct Trajectory {
     forces: Vec<Force>,
     gravity: Vector<Nav>,
     field: Vector<Nav>,
+    /// Of the air over the ground, m/s.
+    wind: Vector<Nav>,
     /// At t = 0, if given.
     velocity: Option<Vector<Nav>>,
 }
@@ -92,7 +94,17 @@ impl Trajectory {
         }
         let (start, attitude) = next;
         segments.push(Segment { start, end: SimTime::FOREVER, attitude, motion: rest() });
-        Trajectory { segments, forces, gravity, field, velocity: None }
+        Trajectory { segments, forces, gravity, field, wind: Vector::ZERO, velocity: None }
+    }
+
+    /// The same in air that moves over the ground at `wind`, m/s.
+    pub fn in_wind(self, wind: Vector<Nav>) -> Trajectory {
+        Trajectory { wind, ..self }
+    }
+
+    /// The velocity of the air over the ground, m/s, the same everywhere.
+    pub fn wind(&self) -> Vector<Nav> {
+        self.wind
     }
 
     /// The sum of the motions' durations: after it the vehicle holds.

@@ -223,7 +223,7 @@ fn wind_is_the_velocity_of_the_air_in_the_scenes_nav_axes() {
         ("ned-frd", "[12, 0, 0]", "[-16, 0, 3]"),
     ] {
         let scene = format!(
-            "duration = \"1 s\"\naxes = \"{axes}\"\n[start]\nvelocity = \"{start} m/s\"\n[airspeed]\nrate = \"10 Hz\"\nwind = \"{wind} m/s\"\n"
+            "duration = \"1 s\"\naxes = \"{axes}\"\n[earth]\nwind = \"{wind} m/s\"\n[start]\nvelocity = \"{start} m/s\"\n[airspeed]\nrate = \"10 Hz\"\n"
         );
         let (_, reading) = of(&plan(&scene), SensorKind::Airspeed)[0];
         let expected = 0.5 * 1.225 * 28.0 * 28.0;

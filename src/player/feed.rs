@@ -3,7 +3,7 @@
 
 use super::sensed;
 use crate::earth::Place;
-use crate::geometry::{Attitude, Body, Vector};
+use crate::geometry::{Attitude, Body, Nav, Vector};
 use crate::motion::{Course, Track, Trajectory, Truth};
 use crate::random::Normals;
 use crate::sensor::block::{self, Block, Column};
@@ -125,10 +125,10 @@ impl Aid {
         block: &mut Block,
     ) {
         let now = self.now.get_or_insert_with(|| Track::new(path)).at(path, t);
-        block.push(self.sensed(now, attitude));
+        block.push(self.sensed(now, attitude, path.wind()));
         let late = late.map(|late| {
             let then = self.late.get_or_insert_with(|| Track::new(path)).at(path, late);
-            block::push(&mut block.late, self.sensed(then, path.at(late).attitude));
+            block::push(&mut block.late, self.sensed(then, path.at(late).attitude, path.wind()));
             then
         });
         if self.air.is_none() {
@@ -138,10 +138,15 @@ impl Aid {
     }
 
     /// The error-free reading.
-    fn sensed(&self, Course { position, velocity }: Course, attitude: Attitude) -> [f64; 3] {
+    fn sensed(
+        &self,
+        Course { position, velocity }: Course,
+        attitude: Attitude,
+        wind: Vector<Nav>,
+    ) -> [f64; 3] {
         let Some(air) = &self.air else { return position.v.to_array() };
         let altitude = self.origin.altitude - position.v.z;
-        [air(&InAir { altitude, velocity, attitude }), 0.0, 0.0]
+        [air(&InAir { altitude, airspeed: velocity - wind, attitude }), 0.0, 0.0]
     }
 }
 

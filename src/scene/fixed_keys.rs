@@ -30,6 +30,11 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("earth", "field", "the magnetic field, a nav vector: \"[20, 0, 45] uT\""),
     (
         "earth",
+        "wind",
+        "the velocity of the air over the ground, a nav vector: \"[0, 5, 0] m/s\" blows to the east in ned",
+    ),
+    (
+        "earth",
         "latitude",
         "of a place, which sets normal gravity (WGS 84) and the field (World Magnetic Model)",
     ),

@@ -28,7 +28,8 @@ impl Plan {
             site: self.site,
             day: self.day,
             limits: Vec::new(),
-            trajectory: Trajectory::new(start, Vec::new(), Vec::new(), gravity, field),
+            trajectory: Trajectory::new(start, Vec::new(), Vec::new(), gravity, field)
+                .in_wind(self.trajectory.wind()),
             sensors: self.sensors.iter().map(still).collect(),
             reference: None,
             outputs: Vec::new(),

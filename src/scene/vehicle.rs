@@ -57,6 +57,7 @@ pub(super) struct Earth {
     pub gravity: Vector<Nav>,
     pub field: Vector<Nav>,
     pub place: Option<earth::Place>,
+    pub wind: Vector<Nav>,
     pub day: Option<Day>,
     pub resolved: toml::Table,
 }
@@ -87,7 +88,9 @@ pub(super) fn earth(top: &Section<'_>) -> Earth {
         section.resolve("field", quantity::text_vector(axes.nav_out(field).to_array(), "uT"));
         field
     };
-    Earth { gravity, field, place, day, resolved: section.finish() }
+    let wind = section.has("wind").then(|| section.vector("wind", Kind::SPEED, None)).flatten();
+    let wind = wind.map_or(Vector::ZERO, |wind| axes.nav_in(plain(wind)));
+    Earth { gravity, field, wind, place, day, resolved: section.finish() }
 }
 
 /// One number pulls straight down; a vector is the acceleration of free fall in nav axes.

@@ -77,8 +77,8 @@ pub type Air = Box<dyn Fn(&InAir) -> f64 + Send>;
 pub struct InAir {
     /// Above the ellipsoid, m.
     pub altitude: f64,
-    /// Over the ground, m/s along nav axes.
-    pub velocity: Vector<Nav>,
+    /// Its velocity through the air, m/s along nav axes.
+    pub airspeed: Vector<Nav>,
     /// Body to nav.
     pub attitude: Attitude,
 }

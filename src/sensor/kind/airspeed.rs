@@ -8,30 +8,21 @@
 use super::baro::{sea_level_pressure, weather};
 use super::{Derived, InAir, Row, Senses, Shape, Shown, Table};
 use crate::earth;
-use crate::geometry::{Nav, Vector};
-use crate::keys::{Name, Values};
-use crate::quantity::Kind;
 use crate::sensor::units;
-use glam::DVec3;
-
-const WIND: Name<DVec3> = Name::new("wind");
 
 pub(super) static ROW: Row = Row {
     name: "airspeed",
     shape: Shape::Pressure,
     senses: Senses::Air(|values| {
-        let (sea_level, wind) = (sea_level_pressure(values), wind(values));
-        Box::new(move |here| dynamic_pressure(here, sea_level, wind))
+        let sea_level = sea_level_pressure(values);
+        Box::new(move |here| dynamic_pressure(here, sea_level))
     }),
     components: &["pressure"],
     unit: "Pa",
     column_unit: "pa",
     units: &units::PRESSURE_UNITS,
     usual_rate: None,
-    keys: || {
-        let about = "velocity of the air over the ground, the same everywhere: \"[0, 5, 0] m/s\" blows to the east in ned";
-        vec![weather(), WIND.nav_vector(Kind::SPEED, about).or("0")]
-    },
+    keys: || vec![weather()],
     may_repeat: false,
     shown: Shown::pressure("Pitot tube", "differential pressure (hPa)"),
     table: Table {
@@ -47,13 +38,8 @@ pub(super) static ROW: Row = Row {
     },
 };
 
-/// Velocity of the air over the ground.
-fn wind(values: &Values) -> Vector<Nav> {
-    Vector::from_vec(values.get(WIND).unwrap_or_default())
-}
-
 /// Pa.
-fn dynamic_pressure(here: &InAir, sea_level: f64, wind: Vector<Nav>) -> f64 {
-    let speed = here.attitude.inverse().apply(here.velocity - wind).v.x;
+fn dynamic_pressure(here: &InAir, sea_level: f64) -> f64 {
+    let speed = here.attitude.inverse().apply(here.airspeed).v.x;
     0.5 * earth::density(here.altitude, sea_level) * speed * speed.abs()
 }
