@@ -2,7 +2,7 @@
 //! the end what came.
 //!
 //! `standin FIRMWARE PATH [--baud N] [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N]
-//! [--rate N] [--speed N]`; for `px4-sitl` PATH is `HOST:PORT`. Exits with 0 when the link closes, with 1 if it used
+//! [--rate N] [--speed N] [--stops S | --stalls S,S | --restarts S,S]`; for `px4-sitl` PATH is `HOST:PORT`. Exits with 0 when the link closes, with 1 if it used
 //! no samples, with 2 if it could not run.
 
 use std::io;
@@ -14,11 +14,11 @@ use std::time::{Duration, Instant};
 
 use ratetable_firmware_host_tests::board::{Device, Port};
 use ratetable_firmware_host_tests::quaternion::to_euler;
-use ratetable_firmware_host_tests::standin::{Clock, Make, Record, Settings, StandIn};
+use ratetable_firmware_host_tests::standin::{Clock, Make, Mishap, Record, Settings, StandIn, Unlucky};
 
 const USAGE: &str = "usage: standin px4|px4-sitl|px4-vectornav|px4-ilabs|ardupilot|ardupilot-mip|ardupilot-ilabs|ardupilot-sbg|inav PATH (px4-sitl: HOST:PORT) [--baud N] \
                      [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N] [--rate HZ] \
-                     [--speed TIMES]";
+                     [--speed TIMES] [--stops S | --stalls S,S | --restarts S,S] (after so many seconds, for so long)";
 
 /// How long PX4 as a program tries to connect.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -30,6 +30,7 @@ struct Arguments {
     baud: Option<u32>,
     speed: f64,
     settings: Settings,
+    mishap: Option<Mishap>,
 }
 
 fn main() -> ExitCode {
@@ -57,7 +58,11 @@ fn run(arguments: &Arguments) -> io::Result<Record> {
         Make::Px4Sitl => Box::new(Device::from(connect(&arguments.path)?)),
         _ => Box::new(Device::open(Path::new(&arguments.path), arguments.baud)?),
     };
-    let firmware = arguments.make.firmware(&arguments.settings);
+    let Arguments { make, settings, .. } = arguments;
+    let firmware = match arguments.mishap {
+        Some(mishap) => Box::new(Unlucky::new(*make, settings, mishap)),
+        None => make.firmware(settings),
+    };
     let mut standin = StandIn::new(port, firmware, Clock::wall(arguments.speed));
     standin.run(&AtomicBool::new(false))?;
     Ok(standin.record().clone())
@@ -78,7 +83,7 @@ fn connect(address: &str) -> io::Result<TcpStream> {
 
 fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     let (mut places, mut baud, mut speed) = (Vec::new(), None, 1.0);
-    let mut settings = Settings::default();
+    let (mut settings, mut mishap) = (Settings::default(), None);
     while let Some(word) = words.next() {
         if !word.starts_with('-') {
             places.push(word);
@@ -92,6 +97,16 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--declination-deg" => settings.declination_rad = number::<f64>(&word, &value)?.to_radians(),
             "--unanswered" => settings.unanswered = number(&word, &value)?,
             "--rate" => settings.rate_hz = number(&word, &value)?,
+            "--stops" => mishap = Some(Mishap::Stops { at_us: micros(&word, &value)? }),
+            "--stalls" | "--restarts" => {
+                let (at, span) =
+                    value.split_once(',').ok_or_else(|| format!("{word}: `{value}` is not two times"))?;
+                let (at_us, for_us) = (micros(&word, at)?, micros(&word, span)?);
+                mishap = Some(match word.as_str() {
+                    "--stalls" => Mishap::Stalls { at_us, for_us },
+                    _ => Mishap::Restarts { at_us, for_us },
+                });
+            }
             "--param" => {
                 let (name, of) =
                     value.split_once('=').ok_or_else(|| format!("{word}: `{value}` is no NAME=N"))?;
@@ -101,9 +116,13 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         }
     }
     match <[String; 2]>::try_from(places) {
-        Ok([make, path]) => Ok(Arguments { make: make.parse()?, path, baud, speed, settings }),
+        Ok([make, path]) => Ok(Arguments { make: make.parse()?, path, baud, speed, settings, mishap }),
         Err(_) => Err("a firmware and a path".into()),
     }
+}
+
+fn micros(word: &str, seconds: &str) -> Result<u64, String> {
+    Ok((number::<f64>(word, seconds)? * 1e6) as u64)
 }
 
 fn number<T: std::str::FromStr>(word: &str, value: &str) -> Result<T, String> {

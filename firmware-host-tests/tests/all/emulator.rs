@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod mavlink_stream;
+mod mishaps;
 mod mpu_stream;
 mod paced;
 mod play;

@@ -11,7 +11,7 @@ const BOARD: &str = env!("CARGO_BIN_EXE_board");
 
 /// The emulator. Cargo builds a package's programs for its own tests only, so this asks it for that of the package
 /// above; where all of the workspace is tested it is there already.
-static RATETABLE: LazyLock<PathBuf> = LazyLock::new(|| {
+pub(super) static RATETABLE: LazyLock<PathBuf> = LazyLock::new(|| {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml");
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["build", "--quiet", "--package", "ratetable", "--bin", "ratetable", "--message-format=json"]);
@@ -99,7 +99,7 @@ fn a_board_that_does_not_exist_is_exit_code_2() {
 }
 
 /// A stand-in for a flight controller.
-const STANDIN: &str = env!("CARGO_BIN_EXE_standin");
+pub(super) const STANDIN: &str = env!("CARGO_BIN_EXE_standin");
 
 #[test]
 fn px4_on_a_slow_link_is_told_of_with_the_parameter_to_change_and_is_exit_code_2() {
