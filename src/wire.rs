@@ -29,6 +29,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod betaflight;
 pub mod dialogue;
 mod fault;
 mod faults;
@@ -47,6 +48,7 @@ mod seconds;
 mod text;
 mod vectornav;
 
+pub use betaflight::Release;
 pub use fault::{PacketFault, PacketFaultKind};
 pub use faults::{Acts, Faults};
 pub use load::load;
@@ -87,6 +89,8 @@ pub enum Controller {
     Ardupilot,
     /// INAV with its HITL simulator message.
     Inav,
+    /// Betaflight as a program, of that release.
+    Betaflight(Release),
 }
 
 /// How a protocol lays its packets out, and whom it talks to.

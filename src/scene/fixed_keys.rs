@@ -97,11 +97,20 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "layout",
         "for `mpu`: \"separate\" or \"burst\" (default: burst where gyro and accel tick together)",
     ),
-    ("output", "version", "for `mavlink`: 1 or 2 (default)"),
+    (
+        "output",
+        "version",
+        "for `mavlink`: 1 or 2 (default); for `betaflight` its release: \"2026.6\" (default; and later), \"2026.6-legacy\" (built with ENABLE_GAZEBO_BRIDGE=0), \"2025.12\" or \"4.5\"",
+    ),
     (
         "output",
         "messages",
         "for `mavlink`, in addition to HIL_SENSOR: any of [\"HIL_STATE_QUATERNION\", \"ATTITUDE_QUATERNION\", \"HIGHRES_IMU\", \"RAW_IMU\", \"SCALED_IMU2\"], 50 Hz each",
+    ),
+    (
+        "output",
+        "answers",
+        "for `betaflight`: where it answers MSP (default: TCP port 5761 of the machine in `to`, such as \"tcpout:127.0.0.1:5761\")",
     ),
     (
         "output",

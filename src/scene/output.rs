@@ -3,9 +3,9 @@
 use super::section::Section;
 use super::suggest;
 use super::target::{TARGETS, Target};
-use crate::link::Address;
+use crate::link::{Address, Endpoint};
 use crate::sensor::SensorPlan;
-use crate::wire::{self, Extra, Extras, Layout, Protocol, Version};
+use crate::wire::{self, Controller, Extra, Extras, Layout, Protocol, Release, Version};
 use std::fmt;
 use std::str::FromStr;
 
@@ -18,12 +18,19 @@ pub struct Destination {
     pub address: Address,
     /// The flight controller that was named in place of a protocol.
     pub target: Option<&'static Target>,
+    /// Where its controller answers, if not on the link itself.
+    pub answers: Option<Address>,
 }
 
 impl Destination {
     /// A protocol on a link.
     pub fn new(protocol: Protocol, address: Address) -> Destination {
-        Destination { protocol, address, target: None }
+        Destination { protocol, address, target: None, answers: None }
+    }
+
+    /// Whether somebody at the other end is spoken with: who answers elsewhere is not reached over every link.
+    pub fn is_spoken_with(&self) -> bool {
+        self.target.is_none_or(|target| target.answers.is_none()) || self.answers.is_some()
     }
 
     /// The same packets and the same controller, on the link called `link`.
@@ -58,7 +65,11 @@ impl FromStr for Destination {
         if let Some(baud) = target.and_then(|target| target.baud) {
             address = address.or_baud(baud);
         }
-        Ok(Destination { protocol, address, target })
+        let answers = match (target.and_then(|target| target.answers), &address) {
+            (Some(port), Address::UdpOut(place)) => Some(Address::TcpOut(Endpoint::new(&place.host, port))),
+            _ => None,
+        };
+        Ok(Destination { protocol, address, target, answers })
     }
 }
 
@@ -147,18 +158,24 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let overload = Overload::from_name(section.word("overload", &Overload::NAMES, Overload::NAMES[0]));
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
-    let (version, extras) = mavlink(section);
+    let asked = ["version", "messages"].map(|key| (key, section.has(key)));
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
     let to = section.text("to", None)?;
     let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
-    let controller = to.target.map(|target| target.controller);
+    let mut controller = to.target.map(|target| target.controller);
+    let (version, extras) = match to.protocol {
+        Protocol::Betaflight => Default::default(),
+        _ => mavlink(section),
+    };
+    if let Some(Controller::Betaflight(release)) = &mut controller {
+        *release = betaflight(section);
+    }
     let wire = wire::Options { layout, version, extras, controller };
-    for key in ["version", "messages"] {
-        if section.has(key) && to.protocol != Protocol::Mavlink {
-            section.mistake(key, format!("is for `mavlink`, not for `{}`", to.protocol.name()));
-        }
+    refuse_keys(section, asked, to.protocol);
+    if section.has("answers") {
+        to.answers = answers(section, &to);
     }
     if layout.is_some() && to.protocol != Protocol::Mpu {
         section.mistake("layout", format!("only `mpu` has layouts, not `{}`", to.protocol.name()));
@@ -196,6 +213,42 @@ fn mavlink(section: &Section<'_>) -> (Version, Extras) {
         }
     }
     (version, extras)
+}
+
+/// `version` of a target `betaflight`: its release.
+fn betaflight(section: &Section<'_>) -> Release {
+    let names = Release::ALL.map(Release::name);
+    let version = section.has("version").then(|| section.word("version", &names, names[0]));
+    version.and_then(Release::from_name).unwrap_or_default()
+}
+
+/// Where a controller answers that does so on a connection of its own.
+fn answers(section: &Section<'_>, to: &Destination) -> Option<Address> {
+    let address = section.text("answers", None)?.parse::<Address>();
+    let apart = to.target.is_some_and(|target| target.answers.is_some());
+    match address {
+        _ if !apart => {
+            section.mistake("answers", format!("is for `betaflight`, not for `{}`", to.at(&to.address)))
+        }
+        Ok(address @ Address::TcpOut(_)) => return Some(address),
+        Ok(address) => {
+            section.mistake("answers", format!("takes tcpout:ADDR:PORT, not `{address}`"));
+        }
+        Err(error) => section.mistake("answers", error.to_string()),
+    }
+    None
+}
+
+/// `version` and `messages` mean something to some protocols alone.
+fn refuse_keys(section: &Section<'_>, asked: [(&'static str, bool); 2], protocol: Protocol) {
+    let takes = |key: &str| match protocol {
+        Protocol::Mavlink => true,
+        Protocol::Betaflight => key == "version",
+        _ => false,
+    };
+    for (key, _) in asked.into_iter().filter(|&(key, is_asked)| is_asked && !takes(key)) {
+        section.mistake(key, format!("is for `mavlink`, not for `{}`", protocol.name()));
+    }
 }
 
 /// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.

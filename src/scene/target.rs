@@ -1,7 +1,7 @@
 //! Targets: a protocol plus what one flight controller needs to be fed well.
 
 use crate::time::{NANOS, SimTime};
-use crate::wire::{Controller, Protocol};
+use crate::wire::{Controller, Protocol, Release};
 
 /// A flight controller as `--to` names it.
 #[derive(Debug, PartialEq)]
@@ -16,6 +16,10 @@ pub struct Target {
     pub controller: Controller,
     /// Where it is looked for unless that is said.
     pub link: Option<&'static str>,
+    /// The TCP port of the same machine at which it answers, where that is not on the link itself.
+    pub answers: Option<u16>,
+    /// Whether it has a source of heading: without one, a constant heading says nothing of it.
+    pub has_heading: bool,
     /// The speed of a serial port that was given none.
     pub baud: Option<u32>,
     /// The vehicle is held still for at least this long, and until its estimator is up.
@@ -31,13 +35,15 @@ pub struct Target {
 }
 
 /// Every target.
-pub static TARGETS: [Target; 4] = [
+pub static TARGETS: [Target; 5] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
         protocol: Protocol::Mavlink,
         controller: Controller::Px4,
         link: None,
+        answers: None,
+        has_heading: true,
         baud: Some(921_600),
         rest: SimTime::ZERO,
         most_hz: None,
@@ -51,6 +57,8 @@ pub static TARGETS: [Target; 4] = [
         protocol: Protocol::Mavlink,
         controller: Controller::Px4Sitl,
         link: Some("tcpin:4560"),
+        answers: None,
+        has_heading: true,
         baud: None,
         rest: SimTime::ZERO,
         most_hz: None,
@@ -64,6 +72,8 @@ pub static TARGETS: [Target; 4] = [
         protocol: Protocol::Vectornav,
         controller: Controller::Ardupilot,
         link: None,
+        answers: None,
+        has_heading: true,
         baud: Some(115_200),
         rest: SimTime(5 * NANOS),
         most_hz: None,
@@ -78,12 +88,29 @@ pub static TARGETS: [Target; 4] = [
         protocol: Protocol::Msp,
         controller: Controller::Inav,
         link: None,
+        answers: None,
+        has_heading: true,
         baud: Some(115_200),
         rest: SimTime(20 * NANOS),
         most_hz: Some(100),
         scene: "level-then-turn",
         settings: &["gyro.rate=100 Hz", "accel.rate=100 Hz"],
         asks: "its variant and MSP_ATTITUDE until it answers; then each simulator message is answered with its attitude",
+    },
+    Target {
+        name: "betaflight",
+        about: "Betaflight as a program (SITL): gyro and accelerometer over UDP, its attitude back over MSP on TCP; start it first",
+        protocol: Protocol::Betaflight,
+        controller: Controller::Betaflight(Release::Y2026M6),
+        link: Some("udpout:127.0.0.1:9003"),
+        answers: Some(5761),
+        has_heading: false,
+        baud: None,
+        rest: SimTime(5 * NANOS),
+        most_hz: None,
+        scene: "level-then-turn",
+        settings: &["gyro.rate=1 kHz", "accel.rate=1 kHz"],
+        asks: "its variant, its version, whether its gyro answers a test rate; then its attitude up to 100 times a second",
     },
 ];
 
@@ -97,6 +124,10 @@ impl Target {
     pub fn expansion(&self) -> Vec<String> {
         let mut lines = vec![format!("protocol {}", self.protocol.name())];
         lines.extend(self.link.map(|link| format!("link {link} by default")));
+        lines.extend(self.answers.map(|port| format!("answers on TCP port {port} of the same machine")));
+        if !self.has_heading {
+            lines.push("has no source of heading: one constant heading is taken out of its attitude (--align none keeps it)".into());
+        }
         lines.extend(self.baud.map(|baud| format!("{baud} baud on a serial port by default")));
         lines.extend(self.most_hz.map(|hz| format!("at most {hz} samples a second of each sensor")));
         lines.push(match self.rest {

@@ -92,6 +92,7 @@ impl Control {
             control.shared.stop.store(true, Ordering::Relaxed);
             drop(consumer);
             producing.abandon();
+            control.talk.borrow_mut().leave();
             here?;
             return Ok(control.never_started(&outside));
         }
@@ -113,7 +114,10 @@ impl Control {
         for output in &job.outputs {
             outputs.push(OpenOutput::open(output).await?);
         }
-        let sides = outputs.iter_mut().map(|it| Side::new(&it.output, it.link.sender())).collect();
+        let side = |it: &mut OpenOutput| {
+            Side::new(&it.output, it.link.sender(), it.answers.as_mut().map(Link::sender))
+        };
+        let sides = outputs.iter_mut().map(side).collect();
         let shared = Arc::new(Shared::before(job.rest));
         let lockstep = job.outputs.iter().any(step::in_lockstep);
         let heard = Heard::new(job.plan.clone(), shared.clone(), job.speed, lockstep);
@@ -166,7 +170,7 @@ impl Control {
 
     fn listen(&mut self) {
         for (i, output) in self.outputs.iter_mut().enumerate() {
-            let Some(receiver) = output.link.receiver() else { continue };
+            let Some(receiver) = output.receiver() else { continue };
             match self.job.tap.take_if(|_| i == 0) {
                 Some(tap) => self.ears.tap(receiver, tap),
                 None => self.ears.listen(i, receiver, &self.talk, self.clock),
@@ -315,7 +319,7 @@ impl Control {
         self.ears.close().await;
         let mut outcome = self.outcome(&accounts);
         for output in self.outputs {
-            output.link.close().await;
+            output.close().await;
         }
         outcome.interrupted = outside.interrupted;
         outcome.command = outside.finish().await;

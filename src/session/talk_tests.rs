@@ -75,7 +75,7 @@ fn output(to: &str) -> Output {
 fn letters(plan: &Arc<Plan>, shared: &Arc<Shared>, speed: Speed, capacity: usize) -> (Talk, Far) {
     let (sender, far) = memory(capacity);
     let heard = Heard::new(plan.clone(), shared.clone(), speed, false);
-    let mut talk = Talk::new(vec![Side::new(&output("csv@pty"), sender)], heard);
+    let mut talk = Talk::new(vec![Side::new(&output("csv@pty"), sender, None)], heard);
     talk.script(0, Box::new(Letters::default()));
     (talk, far)
 }

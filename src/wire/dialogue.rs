@@ -5,8 +5,10 @@
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
 mod frames;
+mod steady;
 
 pub use frames::frames;
+pub(super) use steady::Steady;
 
 use crate::geometry::Attitude;
 use crate::time::{Rate, SimTime};
@@ -18,6 +20,9 @@ pub enum Said<'a> {
     Estimate(Estimate),
     /// It is to be sent these bytes as soon as possible, ahead of the stream; at most [`super::MAX_PACKET`].
     Reply(&'a [u8]),
+    /// Before the stream it is to be sent this packet on the stream's own link, where the conversation is held on another;
+    /// at most [`super::MAX_PACKET`]. Once the stream goes it is lost.
+    Ahead(&'a [u8]),
     /// It has taken a packet of samples in and waits for the next: lockstep.
     Took,
     /// The user should know this; said once.
@@ -73,6 +78,9 @@ pub trait Dialogue: Send {
 
     /// Called every ten milliseconds or so, for what is due by itself: a request, a resend, a notice that nobody answers.
     fn tick(&mut self, _now: i64, _say: &mut dyn FnMut(Said<'_>)) {}
+
+    /// Called when the run ends before the stream began, for a packet that leaves the other side with a vehicle at rest.
+    fn leave(&mut self, _say: &mut dyn FnMut(Said<'_>)) {}
 
     /// How far it is.
     fn stage(&self) -> Stage {

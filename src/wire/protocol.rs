@@ -2,7 +2,9 @@
 
 use super::dialogue::Dialogue;
 use super::row::Row;
-use super::{Controller, Encoder, Now, Options, Packet, Setup, mavlink, mip, mpu, msp, text, vectornav};
+use super::{
+    Controller, Encoder, Now, Options, Packet, Setup, betaflight, mavlink, mip, mpu, msp, text, vectornav,
+};
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
 use crate::time::SimTime;
 
@@ -20,6 +22,8 @@ pub enum Protocol {
     Vectornav,
     /// MicroStrain inertial packets, for ArduPilot.
     Mip,
+    /// The state that Betaflight's SITL takes from a simulator.
+    Betaflight,
     /// A line of comma-separated values a reading.
     Csv,
     /// A JSON object a reading.
@@ -27,17 +31,26 @@ pub enum Protocol {
 }
 
 /// Every protocol's row, in order.
-static ROWS: [&Row; 7] =
-    [&mpu::ROW, &mavlink::ROW, &msp::ROW, &vectornav::ROW, &mip::ROW, &text::CSV, &text::JSONL];
+static ROWS: [&Row; 8] = [
+    &mpu::ROW,
+    &mavlink::ROW,
+    &msp::ROW,
+    &vectornav::ROW,
+    &mip::ROW,
+    &betaflight::ROW,
+    &text::CSV,
+    &text::JSONL,
+];
 
 impl Protocol {
     /// Every protocol.
-    pub const ALL: [Protocol; 7] = [
+    pub const ALL: [Protocol; 8] = [
         Protocol::Mpu,
         Protocol::Mavlink,
         Protocol::Msp,
         Protocol::Vectornav,
         Protocol::Mip,
+        Protocol::Betaflight,
         Protocol::Csv,
         Protocol::Jsonl,
     ];

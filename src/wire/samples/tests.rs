@@ -59,7 +59,9 @@ fn bytes(packets: &[Packet]) -> Vec<u8> {
 fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
     let count = [1f64.to_radians() / 16.4, crate::earth::STANDARD_GRAVITY / 2048.0, 0.15][kind as usize];
     let msp = [1f64.to_radians() / 16.0, 1e-3 * crate::earth::STANDARD_GRAVITY, 0.0][kind as usize];
+    let betaflight = [1f64.to_radians() / 16.384, crate::earth::STANDARD_GRAVITY / 256.0, 0.0][kind as usize];
     match protocol {
+        Protocol::Betaflight => 0.5 * betaflight * (1.0 + 1e-9),
         Protocol::Mpu => 0.5 * count * (1.0 + 1e-9),
         Protocol::Msp => 0.5 * msp * (1.0 + 1e-9),
         Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip => {
@@ -71,7 +73,7 @@ fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
 
 /// The first thing in which the samples differ from the readings that were sent.
 fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample]) -> Option<String> {
-    for kind in SensorKind::TRIADS {
+    for kind in SensorKind::TRIADS.into_iter().filter(|kind| protocol.carries(*kind)) {
         let sent: Vec<_> = sent.iter().filter(|(_, reading)| reading.kind == kind).collect();
         let came: Vec<_> = samples.iter().filter(|sample| sample.kind == kind).collect();
         if sent.len() != came.len() {
@@ -81,7 +83,7 @@ fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample
             let unit = match protocol {
                 Protocol::Mpu | Protocol::Mavlink => Some(1000),
                 Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => Some(1),
-                Protocol::Msp | Protocol::Mip => None,
+                Protocol::Msp | Protocol::Mip | Protocol::Betaflight => None,
             };
             if sample.t != unit.map(|unit| SimTime(t.0 / unit * unit)) {
                 return Some(format!("{kind} at {:?}, sent for {t}", sample.t));
@@ -114,7 +116,10 @@ fn every_sample_comes_back_with_its_time_and_value() {
                 continue;
             }
             // These tell every sensor in every packet, at most 100 times a second: compare where all are new.
-            let tells_all = matches!(protocol, Protocol::Msp | Protocol::Vectornav | Protocol::Mip);
+            let tells_all = matches!(
+                protocol,
+                Protocol::Msp | Protocol::Vectornav | Protocol::Mip | Protocol::Betaflight
+            );
             if tells_all && plan.sensors[2].rate != Rate::hz(100) {
                 continue;
             }
@@ -145,8 +150,10 @@ fn a_swapped_axis_is_noticed() {
             |[x, y, z]| [1.01 * x, 1.01 * y, 1.01 * z],
         ];
         for change in changes {
-            // The field in `msp` has no value to be wrong.
-            let has_value = |kind: &SensorKind| (protocol, *kind) != (Protocol::Msp, SensorKind::Mag);
+            // The field in `msp` has no value to be wrong, and `betaflight` has no field.
+            let has_value = |kind: &SensorKind| {
+                protocol.carries(*kind) && (protocol, *kind) != (Protocol::Msp, SensorKind::Mag)
+            };
             for kind in SensorKind::TRIADS.into_iter().filter(has_value) {
                 let changed = |sample: &Sample| match sample.value {
                     Some(value) if sample.kind == kind => {
