@@ -7,6 +7,7 @@
 
 mod ardupilot;
 mod arrivals;
+mod betaflight;
 mod hil;
 mod inav;
 mod make;
@@ -15,6 +16,7 @@ mod own;
 mod px4;
 mod px4_sitl;
 mod record;
+mod sockets;
 mod validator;
 
 use std::io;
@@ -23,12 +25,14 @@ use std::time::Duration;
 
 pub use ardupilot::Ardupilot;
 pub use arrivals::{Clock, Framing};
+pub use betaflight::{Betaflight, Build};
 pub use inav::Inav;
 pub use make::{Make, Settings};
 pub use mip::Mip;
 pub use px4::{Parameters, Px4};
 pub use px4_sitl::Px4Sitl;
 pub use record::{Counts, Moment, Record};
+pub use sockets::Program;
 
 use crate::board::{Arrival, Port};
 use own::Own;
@@ -46,6 +50,11 @@ const MAX_WAITING: usize = 16_384;
 pub trait Firmware {
     /// Takes bytes that have arrived by `now_us` of its own clock, and appends what it says to them.
     fn receive(&mut self, bytes: &[u8], now_us: u64, out: &mut Vec<u8>);
+
+    /// The same on the link on which it is spoken with, if that is not the samples' own.
+    fn receive_apart(&mut self, bytes: &[u8], now_us: u64, out: &mut Vec<u8>) {
+        self.receive(bytes, now_us, out);
+    }
 
     /// Does what is due by itself by `now_us`; called often, with times that never go back.
     fn turn(&mut self, now_us: u64, out: &mut Vec<u8>);

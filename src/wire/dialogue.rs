@@ -5,10 +5,8 @@
 //! holds the vehicle still until every [`Stage`] is [`Stage::Ready`].
 
 mod frames;
-mod steady;
 
 pub use frames::frames;
-pub(super) use steady::Steady;
 
 use crate::geometry::Attitude;
 use crate::time::{Rate, SimTime};

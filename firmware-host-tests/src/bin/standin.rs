@@ -2,7 +2,8 @@
 //! the end what came.
 //!
 //! `standin FIRMWARE PATH [--baud N] [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N]
-//! [--rate N] [--speed N]`; for `px4-sitl` PATH is `HOST:PORT`. Exits with 0 when the link closes, with 1 if it used
+//! [--rate N] [--speed N] [--dead msp|gyro]`; for `px4-sitl` PATH is `HOST:PORT`, for `betaflight`
+//! `HOST:UDP_PORT:TCP_PORT`, where it listens as the firmware does on 9003 and 5761. Exits with 0 when the link closes, with 1 if it used
 //! no samples, with 2 if it could not run.
 
 use std::io;
@@ -14,9 +15,10 @@ use std::time::{Duration, Instant};
 
 use ratetable_firmware_host_tests::board::{Device, Port};
 use ratetable_firmware_host_tests::quaternion::to_euler;
-use ratetable_firmware_host_tests::standin::{Clock, Make, Record, Settings, StandIn};
+use ratetable_firmware_host_tests::standin::{Clock, Make, Program, Record, Settings, StandIn};
 
-const USAGE: &str = "usage: standin px4|px4-sitl|ardupilot|ardupilot-mip|inav PATH (px4-sitl: HOST:PORT) [--baud N] \
+const USAGE: &str = "usage: standin px4|px4-sitl|ardupilot|ardupilot-mip|inav|betaflight PATH (px4-sitl: HOST:PORT, \
+                     betaflight: HOST:UDP_PORT:TCP_PORT) [--baud N] [--dead msp|gyro] \
                      [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N] [--rate HZ] \
                      [--speed TIMES]";
 
@@ -53,12 +55,19 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> io::Result<Record> {
+    let clock = Clock::wall(arguments.speed);
+    if arguments.make == Make::Betaflight {
+        let mut program =
+            Program::open(&arguments.path, arguments.make.firmware(&arguments.settings), clock)?;
+        program.run(&AtomicBool::new(false))?;
+        return Ok(program.record().clone());
+    }
     let port: Box<dyn Port + Send> = match arguments.make {
         Make::Px4Sitl => Box::new(Device::from(connect(&arguments.path)?)),
         _ => Box::new(Device::open(Path::new(&arguments.path), arguments.baud)?),
     };
     let firmware = arguments.make.firmware(&arguments.settings);
-    let mut standin = StandIn::new(port, firmware, Clock::wall(arguments.speed));
+    let mut standin = StandIn::new(port, firmware, clock);
     standin.run(&AtomicBool::new(false))?;
     Ok(standin.record().clone())
 }
@@ -92,6 +101,11 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--declination-deg" => settings.declination_rad = number::<f64>(&word, &value)?.to_radians(),
             "--unanswered" => settings.unanswered = number(&word, &value)?,
             "--rate" => settings.rate_hz = number(&word, &value)?,
+            "--dead" => match value.as_str() {
+                "msp" => settings.build.msp = false,
+                "gyro" => settings.build.gyro = false,
+                _ => return Err(format!("{word}: `{value}` is neither msp nor gyro")),
+            },
             "--param" => {
                 let (name, of) =
                     value.split_once('=').ok_or_else(|| format!("{word}: `{value}` is no NAME=N"))?;

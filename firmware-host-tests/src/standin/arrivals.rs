@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ratetable_protocols::{mavlink, mip, msp, vectornav};
+use ratetable_protocols::{betaflight, mavlink, mip, msp, vectornav};
 
 /// How a link's packets are told apart, by who only counts packets of samples.
 pub enum Framing {
@@ -14,6 +14,8 @@ pub enum Framing {
     Vectornav(Box<vectornav::Decoder>),
     /// A MicroStrain unit's packets.
     Mip(Box<mip::Decoder>),
+    /// What Betaflight's SITL takes from a simulator.
+    Betaflight(Box<betaflight::Decoder>),
 }
 
 impl Framing {
@@ -32,6 +34,7 @@ impl Framing {
                 whole |= matches!(received, Ok(vectornav::Packet::Imu(_)));
             }),
             Self::Mip(decoder) => decoder.feed(&bytes, |received| whole |= received.is_ok()),
+            Self::Betaflight(decoder) => decoder.feed(&bytes, |received| whole |= received.is_ok()),
         }
         whole
     }

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use ratetable_protocols::{mavlink, mip, msp, vectornav};
+use ratetable_protocols::{betaflight, mavlink, mip, msp, vectornav};
 
-use super::{Ardupilot, Firmware, Framing, Inav, Mip, Parameters, Px4, Px4Sitl};
+use super::{Ardupilot, Betaflight, Build, Firmware, Framing, Inav, Mip, Parameters, Px4, Px4Sitl};
 use crate::ahrs::Kind;
 
 /// A firmware on a kind of link.
@@ -21,6 +21,8 @@ pub enum Make {
     ArdupilotMip,
     /// INAV.
     Inav,
+    /// Betaflight as a program.
+    Betaflight,
 }
 
 /// A firmware's parameters.
@@ -36,6 +38,8 @@ pub struct Settings {
     pub unanswered: u64,
     /// ArduPilot: IMU packets a second that it asks a VN-100 for.
     pub rate_hz: u32,
+    /// Betaflight: how it is built, and what went wrong in its boot.
+    pub build: Build,
 }
 
 impl Default for Settings {
@@ -47,13 +51,15 @@ impl Default for Settings {
             parameters: Parameters::new(),
             unanswered: 100,
             rate_hz: 100,
+            build: Build::default(),
         }
     }
 }
 
 impl Make {
     /// Every make.
-    pub const ALL: [Self; 5] = [Self::Px4, Self::Px4Sitl, Self::Ardupilot, Self::ArdupilotMip, Self::Inav];
+    pub const ALL: [Self; 6] =
+        [Self::Px4, Self::Px4Sitl, Self::Ardupilot, Self::ArdupilotMip, Self::Inav, Self::Betaflight];
 
     /// As it is called.
     pub const fn name(self) -> &'static str {
@@ -63,6 +69,7 @@ impl Make {
             Self::Ardupilot => "ardupilot",
             Self::ArdupilotMip => "ardupilot-mip",
             Self::Inav => "inav",
+            Self::Betaflight => "betaflight",
         }
     }
 
@@ -74,6 +81,7 @@ impl Make {
             Self::Ardupilot => Box::new(Ardupilot::new(settings)),
             Self::ArdupilotMip => Box::new(Mip::new(settings)),
             Self::Inav => Box::new(Inav::new(settings)),
+            Self::Betaflight => Box::new(Betaflight::new(settings)),
         }
     }
 
@@ -84,6 +92,7 @@ impl Make {
             Self::Ardupilot => Framing::Vectornav(Box::new(vectornav::Decoder::new())),
             Self::ArdupilotMip => Framing::Mip(Box::new(mip::Decoder::new())),
             Self::Inav => Framing::Msp(Box::new(msp::Decoder::new())),
+            Self::Betaflight => Framing::Betaflight(Box::new(betaflight::Decoder::new())),
         }
     }
 }

@@ -6,9 +6,9 @@
 
 use super::Release;
 use super::probe::{Probe, Verdict, bytes};
-use crate::geometry::{Attitude, Euler};
+use crate::geometry::Attitude;
 use crate::wire::Controller;
-use crate::wire::dialogue::{Dialogue, Estimate, Pause, Said, Stage, Stamp, Steady};
+use crate::wire::dialogue::{Dialogue, Estimate, Pause, Said, Stage, Stamp};
 use glam::DQuat;
 use ratetable_protocols::Error;
 use ratetable_protocols::betaflight::state;
@@ -40,7 +40,6 @@ struct Ear {
     /// When it was first asked, and when it said something last.
     since: Option<i64>,
     heard: i64,
-    steady: Steady,
     told: Told,
 }
 
@@ -50,7 +49,7 @@ enum Step {
     Asking,
     /// Does its gyro answer?
     Probing(Probe),
-    /// It is fed and tells its attitude; whether that is steady.
+    /// It is fed; whether it tells its attitude. Its gains are so high while it rests that the target's rest will do.
     Telling(bool),
     /// It is not to be fed. What the user can do was said.
     Refused,
@@ -83,7 +82,6 @@ impl Sitl {
             asked: None,
             since: None,
             heard: i64::MIN,
-            steady: Steady::default(),
             told: Told::default(),
         };
         Sitl { decoder: Decoder::new(), pause: Pause::default(), damaged: 0, ear }
@@ -154,31 +152,30 @@ impl Ear {
                     probe.hear(&reply);
                 }
             }
-            Some(Message::AttitudeQuaternion(reply)) => self.estimate(&reply, now, say),
-            Some(Message::Attitude(reply)) => self.settle(attitude_of(&reply), now),
+            Some(Message::AttitudeQuaternion(reply)) => self.estimate(&reply, say),
+            Some(Message::Attitude(_)) => self.hears(),
             _ => {}
         }
     }
 
     /// What it estimates.
-    fn estimate(&mut self, reply: &attitude_quaternion::Repr, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+    fn estimate(&mut self, reply: &attitude_quaternion::Repr, say: &mut dyn FnMut(Said<'_>)) {
         let [w, x, y, z] = reply.q.map(f64::from);
         let q = DQuat::from_xyzw(x, -y, -z, w);
         if q.length() < 0.5 * attitude_quaternion::SCALE {
             return;
         }
         let attitude = Attitude::from_quat(q.normalize());
-        self.settle(attitude, now);
+        self.hears();
         if self.release.estimates() {
             say(Said::Estimate(Estimate { stamp: Stamp::Arrival, attitude }));
         }
     }
 
-    /// The scene may start on a steady attitude.
-    fn settle(&mut self, attitude: Attitude, now: i64) {
-        let steady = self.steady.take(attitude, now);
+    /// It tells an attitude: the scene may start.
+    fn hears(&mut self) {
         if let Step::Telling(ready) = &mut self.step {
-            *ready |= steady;
+            *ready = true;
         }
     }
 
@@ -297,17 +294,10 @@ fn mirrored(release: Release) -> String {
     )
 }
 
-/// The attitude that it tells in angles.
-fn attitude_of(reply: &attitude::Repr) -> Attitude {
-    let [roll, pitch, yaw] =
-        [f64::from(reply.roll) / 10.0, -f64::from(reply.pitch) / 10.0, f64::from(reply.yaw)];
-    let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::to_radians);
-    Attitude::from_quat(Euler { roll, pitch, yaw }.to_quat())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Euler;
     use crate::time::NANOS;
     use proptest::prelude::*;
     use ratetable_protocols::betaflight::{self, GYRO_COUNTS};
@@ -430,14 +420,14 @@ mod tests {
     }
 
     #[test]
-    fn it_is_asked_turned_there_and_back_fed_and_played_to_once_it_is_steady() {
+    fn it_is_asked_turned_there_and_back_fed_and_played_to_once_it_tells_its_attitude() {
         let mut firmware = Firmware::default();
         let heard = converse(&mut sitl(Release::Y2026M6), &mut firmware, 400);
         assert_eq!(heard.notices, Vec::<String>::new());
         let stages: Vec<_> = heard.stages.iter().map(|(_, stage)| *stage).collect();
         assert_eq!(stages, [Stage::Silent, Stage::Still, Stage::Ready]);
         let began: Vec<_> = heard.stages.iter().map(|(k, _)| *k).collect();
-        assert!(began[1] < 50 && (200..260).contains(&(began[2] - began[1])), "{began:?}");
+        assert!(began[1] < 50 && began[2] - began[1] < 5, "{began:?}");
         for axis in 0..3 {
             let all: f64 = firmware.turned.iter().map(|turned| turned[axis]).sum();
             let most = firmware.turned.iter().map(|turned| turned[axis].abs()).fold(0.0, f64::max);

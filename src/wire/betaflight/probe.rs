@@ -11,8 +11,8 @@ use ratetable_protocols::msp::raw_imu;
 
 /// Test packets with which nothing turns yet: after a silence of half a second the firmware leaves one out.
 const LEAD: u32 = 5;
-/// The most that it is turned for, ns.
-const PATIENCE: i64 = 2_000_000_000;
+/// The most that it is turned for, and then back for, ns.
+const PATIENCE: i64 = 1_000_000_000;
 /// The test rate about forward, right and down, deg/s: each axis has its own.
 const RATE: [f64; 3] = [30.0, 20.0, 10.0];
 /// How far an answer may be off, deg/s: its filters take a moment.

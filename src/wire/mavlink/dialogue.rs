@@ -7,6 +7,7 @@
 mod asking;
 mod parameters;
 mod px4;
+mod steady;
 
 mod voice;
 

@@ -5,11 +5,11 @@
 //! read from its parameters. In HIL mode it has no other sensors: an attitude means that it hears.
 
 use super::parameters::Parameters;
+use super::steady::Steady;
 use super::{Autopilot, Said, Stage, Voice};
 use crate::geometry::Attitude;
 use crate::time::NANOS;
 use crate::wire::Protocol;
-use crate::wire::dialogue::Steady;
 use crate::wire::mavlink::HARDWARE_IN_THE_LOOP;
 
 /// The slowest link that PX4 does not take samples from, B/s.

@@ -20,7 +20,7 @@ const GRAIN: i64 = NANOS / 100;
 /// What is compared is the direction of down in body axes, which heading does not move: near level its x is −pitch and
 /// its y is roll, and it is as good at any other attitude.
 #[derive(Debug, Default)]
-pub struct Steady {
+pub(super) struct Steady {
     grains: VecDeque<Grain>,
     newest: i64,
 }
@@ -35,7 +35,7 @@ struct Grain {
 
 impl Steady {
     /// Takes the next attitude and says whether all of the last two seconds keep together.
-    pub fn take(&mut self, attitude: Attitude, now: i64) -> bool {
+    pub(super) fn take(&mut self, attitude: Attitude, now: i64) -> bool {
         let down = attitude.inverse().apply(Vector::<Nav>::new(0.0, 0.0, 1.0)).v;
         if now - self.newest > GAP {
             self.grains.clear();
