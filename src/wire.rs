@@ -30,6 +30,7 @@
 //! ```
 
 mod beat;
+mod betaflight;
 mod claim;
 pub mod dialogue;
 mod fault;
@@ -53,6 +54,7 @@ mod text;
 mod vectornav;
 mod wrap;
 
+pub use betaflight::Release;
 pub use claim::Claim;
 pub use fault::{PacketFault, PacketFaultKind};
 pub use faults::{Acts, Faults};
@@ -98,6 +100,8 @@ pub enum Controller {
     Ardupilot,
     /// INAV with its HITL simulator message.
     Inav,
+    /// Betaflight as a program, of that release.
+    Betaflight(Release),
 }
 
 /// What a packet carries of the samples since the packet before.

@@ -7,6 +7,7 @@
 
 mod ardupilot;
 mod arrivals;
+mod betaflight;
 mod hil;
 mod ilabs;
 mod inav;
@@ -19,6 +20,7 @@ mod px4_sitl;
 mod px4_vectornav;
 mod record;
 mod sbg;
+mod sockets;
 mod validator;
 
 use std::io;
@@ -27,6 +29,7 @@ use std::time::Duration;
 
 pub use ardupilot::Ardupilot;
 pub use arrivals::{Clock, Framing};
+pub use betaflight::{Betaflight, Build};
 pub use ilabs::Ilabs;
 pub use inav::Inav;
 pub use make::{Make, Settings};
@@ -37,6 +40,7 @@ pub use px4_sitl::Px4Sitl;
 pub use px4_vectornav::Px4Vectornav;
 pub use record::{Counts, Moment, Record};
 pub use sbg::Sbg;
+pub use sockets::Program;
 
 use crate::board::{Arrival, Port};
 use own::Own;
@@ -54,6 +58,11 @@ const MAX_WAITING: usize = 16_384;
 pub trait Firmware {
     /// Takes bytes that have arrived by `now_us` of its own clock, and appends what it says to them.
     fn receive(&mut self, bytes: &[u8], now_us: u64, out: &mut Vec<u8>);
+
+    /// The same on the link on which it is spoken with, if that is not the samples' own.
+    fn receive_apart(&mut self, bytes: &[u8], now_us: u64, out: &mut Vec<u8>) {
+        self.receive(bytes, now_us, out);
+    }
 
     /// Does what is due by itself by `now_us`; called often, with times that never go back.
     fn turn(&mut self, now_us: u64, out: &mut Vec<u8>);

@@ -2,7 +2,8 @@
 //!
 //! One room a format: [`mpu`] carries an MPU's registers in a stream that survives damage,
 //! [`mavlink`] a handful of MAVLink messages, [`msp`] INAV's simulator message and the questions
-//! around it, [`vectornav`], [`mip`], [`ilabs`] and [`sbg`] what external units send to ArduPilot and PX4. Every
+//! around it, [`vectornav`], [`mip`], [`ilabs`] and [`sbg`] what external units send to ArduPilot and PX4,
+//! [`betaflight`] what Betaflight's SITL takes for its sensors. Every
 //! payload file declares its fields once (`message.rs`), and the rest follows: a view over bytes (`Payload`), the
 //! same as plain values (`Repr` with `parse`, `buffer_len` and `emit`), and tests over one golden array.
 //!
@@ -24,6 +25,7 @@
 #[macro_use]
 mod message;
 
+pub mod betaflight;
 mod bytes;
 pub mod cobs;
 mod error;

@@ -28,11 +28,15 @@ use crate::error::Error;
 
 pub mod api_version;
 pub mod attitude;
+pub mod attitude_quaternion;
 mod decoder;
 pub mod fc_variant;
+pub mod fc_version;
+pub mod raw_imu;
 pub mod simulator;
 pub mod simulator_air;
 pub mod simulator_reply;
+pub mod status;
 
 pub use decoder::Decoder;
 
@@ -197,6 +201,14 @@ messages! {
     ApiVersion(api_version),
     /// Which firmware it is.
     FcVariant(fc_variant),
+    /// Which version of that firmware it is.
+    FcVersion(fc_version),
+    /// What its tasks do.
+    Status(status),
+    /// What its sensors read.
+    RawImu(raw_imu),
+    /// The controller's attitude as a quaternion.
+    AttitudeQuaternion(attitude_quaternion),
 }
 
 impl Message {

@@ -6,7 +6,7 @@ use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::link::Address;
 use crate::report::Limit;
-use crate::scene::{Destination, Output, OutputFault, Plan};
+use crate::scene::{Destination, Output, OutputFault, Plan, Target};
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
@@ -42,9 +42,9 @@ pub struct Arguments {
     /// Scene time from which on the other side's estimates are judged
     #[arg(long, value_name = "TIME", default_value = "0", value_parser = options::from_zero)]
     settle: SimTime,
-    /// What to take out of its estimates before they are judged
-    #[arg(long, value_enum, default_value_t = options::Alignment::None)]
-    align: options::Alignment,
+    /// What to take out of its estimates before they are judged [default: none; heading for a target without a source of heading]
+    #[arg(long, value_enum)]
+    align: Option<options::Alignment>,
     /// Keep the pacing thread to this processor
     #[arg(long, value_name = "N", value_parser = options::processor)]
     cpu: Option<usize>,
@@ -113,7 +113,7 @@ fn job(arguments: &Arguments, plan: Plan) -> (Job, bool) {
     let job = Job {
         end: arguments.span.unwrap_or(whole.end),
         rest: arguments.rest.or(whole.rest),
-        judging: Judging { align: arguments.align.into(), settle: arguments.settle },
+        judging: Judging { align: align(arguments, whole.target()).into(), settle: arguments.settle },
         speed: arguments.speed,
         wait: arguments.wait,
         command: arguments.command.clone(),
@@ -122,6 +122,12 @@ fn job(arguments: &Arguments, plan: Plan) -> (Job, bool) {
         ..whole
     };
     (job, demonstration)
+}
+
+/// What is taken out of the estimates: as asked, or what a target cannot know.
+fn align(arguments: &Arguments, target: Option<&Target>) -> options::Alignment {
+    let blind = target.is_some_and(|target| !target.has_heading);
+    arguments.align.unwrap_or(if blind { options::Alignment::Heading } else { options::Alignment::None })
 }
 
 /// The requested scene, or the first target's, or the demonstration's.

@@ -51,7 +51,7 @@ impl Asking {
                 let _ = sender.send(bytes);
             }
             Said::Notice(text) | Said::Restart(text) => notices.push(text),
-            Said::Took | Said::Pass(_) | Said::Speed(_) => {}
+            Said::Took | Said::Pass(_) | Said::Speed(_) | Said::Ahead(_) => {}
         });
         notices
     }

@@ -102,7 +102,11 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "layout",
         "for `mpu`: \"separate\" or \"burst\" (default: burst where gyro and accel tick together)",
     ),
-    ("output", "version", "for `mavlink`: 1 or 2 (default)"),
+    (
+        "output",
+        "version",
+        "for `mavlink`: 1 or 2 (default); for `betaflight` its release: \"2026.6\" (default; and later), \"2026.6-legacy\" (built with ENABLE_GAZEBO_BRIDGE=0), \"2025.12\" or \"4.5\"",
+    ),
     (
         "output",
         "messages",
@@ -117,6 +121,11 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "output",
         "mag_unit",
         "for `sbg`, the unit of the magnetic field: \"milligauss\" (default), which ArduPilot takes it for, or \"gauss\", which PX4 does",
+    ),
+    (
+        "output",
+        "answers",
+        "for `betaflight`: where it answers MSP (default: TCP port 5761 of the machine in `to`, such as \"tcpout:127.0.0.1:5761\")",
     ),
     (
         "output",

@@ -400,6 +400,16 @@ const REST: &[Case] = &[
         &[("6:11", "is for `mavlink`, not for `mpu`"), ("7:12", "is for `mavlink`, not for `mpu`")],
     ),
     (
+        gyro!("[[output]]\nto = \"betaflight\"\nversion = \"2025.6\"\nmessages = []\n"),
+        &[("6:11", "|2025.12"), ("7:12", "is for `mavlink`, not for `betaflight`")],
+    ),
+    (
+        gyro!(
+            "[[output]]\nto = \"betaflight\"\nanswers = \"udpout:127.0.0.1:1\"\n[[output]]\nto = \"inav@pty\"\nanswers = \"tcpout:127.0.0.1:1\"\n"
+        ),
+        &[("6:11", "takes tcpout:ADDR:PORT"), ("9:11", "is for `betaflight`, not for `inav@pty`")],
+    ),
+    (
         gyro!("[[output]]\nto = \"mavlink@pty\"\nversion = 3\nmessages = [\"RAW_IMU\", \"RAW_IMUS\"]\n"),
         &[("6:11", "is 3; MAVLink has 1 and 2"), ("7:24", "did you mean `RAW_IMU`?")],
     ),

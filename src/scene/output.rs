@@ -3,9 +3,11 @@
 use super::section::Section;
 use super::suggest;
 use super::target::{TARGETS, Target};
-use crate::link::Address;
+use crate::link::{Address, Endpoint};
 use crate::sensor::SensorPlan;
-use crate::wire::{self, AtEnd, Claim, Extra, Extras, Layout, MagUnit, Protocol, Thin, Version};
+use crate::wire::{
+    self, AtEnd, Claim, Controller, Extra, Extras, Layout, MagUnit, Protocol, Release, Thin, Version,
+};
 use std::fmt;
 use std::str::FromStr;
 
@@ -18,12 +20,19 @@ pub struct Destination {
     pub address: Address,
     /// The flight controller that was named in place of a protocol.
     pub target: Option<&'static Target>,
+    /// Where its controller answers, if not on the link itself.
+    pub answers: Option<Address>,
 }
 
 impl Destination {
     /// A protocol on a link.
     pub fn new(protocol: Protocol, address: Address) -> Destination {
-        Destination { protocol, address, target: None }
+        Destination { protocol, address, target: None, answers: None }
+    }
+
+    /// Whether somebody at the other end is spoken with: who answers elsewhere is not reached over every link.
+    pub fn is_spoken_with(&self) -> bool {
+        self.target.is_none_or(|target| target.answers.is_none()) || self.answers.is_some()
     }
 
     /// The speed at which the packets go out, baud, where there is one: of a serial port that which the controller sets.
@@ -65,7 +74,11 @@ impl FromStr for Destination {
         if let Some(baud) = target.and_then(|target| target.baud) {
             address = address.or_baud(baud);
         }
-        Ok(Destination { protocol, address, target })
+        let answers = match (target.and_then(|target| target.answers), &address) {
+            (Some(port), Address::UdpOut(place)) => Some(Address::TcpOut(Endpoint::new(&place.host, port))),
+            _ => None,
+        };
+        Ok(Destination { protocol, address, target, answers })
     }
 }
 
@@ -154,18 +167,25 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let overload = Overload::from_name(section.word("overload", &Overload::NAMES, Overload::NAMES[0]));
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
-    let (version, extras) = mavlink(section);
     let (claim, mag) = unit(section);
     if !section.has("to") {
         section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
     }
-    let to = section.text("to", None)?;
-    let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
-    let controller = to.target.map(|target| target.controller);
+    let to = section
+        .text("to", None)
+        .and_then(|to| to.parse::<Destination>().map_err(|error: String| section.mistake("to", error)).ok());
+    // `version` is a number in MAVLink and a release of Betaflight.
+    let is_betaflight = to.as_ref().is_some_and(|to| to.protocol == Protocol::Betaflight);
+    let (version, extras) = if is_betaflight { Default::default() } else { mavlink(section) };
+    let mut to = to?;
+    let mut controller = to.target.map(|target| target.controller);
     let thin =
         section.has("thin").then(|| Thin::from_name(section.word("thin", &Thin::NAMES, Thin::NAMES[1])));
     let at_end = section.has("at_end").then(|| section.word("at_end", &AtEnd::NAMES, AtEnd::NAMES[0]));
     let at_end = at_end.map_or(AtEnd::default(), AtEnd::from_name);
+    if let Some(Controller::Betaflight(release)) = &mut controller {
+        *release = betaflight(section);
+    }
     let wire = wire::Options { layout, version, extras, controller, at_end, thin, claim, mag };
     for key in Protocol::own_keys().filter(|key| section.has(key)) {
         let owners: Vec<_> = Protocol::owners(key).map(|it| format!("`{}`", it.name())).collect();
@@ -176,6 +196,9 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     }
     if let Some(Err(why)) = sensors.map(|sensors| wire::check(to.protocol, &wire, sensors)) {
         section.mistake(if extras == Extras::default() { "layout" } else { "messages" }, why);
+    }
+    if section.has("answers") {
+        to.answers = answers(section, &to);
     }
     match pace {
         Some(true) => paced(section, &to),
@@ -214,6 +237,29 @@ fn unit(section: &Section<'_>) -> (Claim, Option<MagUnit>) {
     let word = |key, words: &[&'static str; 2]| section.has(key).then(|| section.word(key, words, words[0]));
     let claim = word("attitude", &Claim::NAMES).map_or(Claim::default(), Claim::from_name);
     (claim, word("mag_unit", &MagUnit::NAMES).map(MagUnit::from_name))
+}
+
+/// `version` of a target `betaflight`: its release.
+fn betaflight(section: &Section<'_>) -> Release {
+    let names = Release::ALL.map(Release::name);
+    let version = section.has("version").then(|| section.word("version", &names, names[0]));
+    version.and_then(Release::from_name).unwrap_or_default()
+}
+
+/// Where a controller answers that does so on a connection of its own.
+fn answers(section: &Section<'_>, to: &Destination) -> Option<Address> {
+    let address = section.text("answers", None)?.parse::<Address>();
+    let apart = to.target.is_some_and(|target| target.answers.is_some());
+    match address {
+        // Said already, of a protocol that has no such key.
+        _ if !apart => {}
+        Ok(address @ Address::TcpOut(_)) => return Some(address),
+        Ok(address) => {
+            section.mistake("answers", format!("takes tcpout:ADDR:PORT, not `{address}`"));
+        }
+        Err(error) => section.mistake("answers", error.to_string()),
+    }
+    None
 }
 
 /// `pace = true` needs a pty with a speed: a serial port has its own time, and no other link has any.

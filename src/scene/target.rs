@@ -2,7 +2,7 @@
 
 use super::{Plan, SceneError, builtin};
 use crate::time::{NANOS, SimTime};
-use crate::wire::{Controller, Protocol};
+use crate::wire::{Controller, Protocol, Release};
 
 /// A flight controller as `--to` names it.
 #[derive(Debug, PartialEq)]
@@ -17,6 +17,10 @@ pub struct Target {
     pub controller: Controller,
     /// Where it is looked for unless that is said.
     pub link: Option<&'static str>,
+    /// The TCP port of the same machine at which it answers, where that is not on the link itself.
+    pub answers: Option<u16>,
+    /// Whether it has a source of heading: without one, a constant heading says nothing of it.
+    pub has_heading: bool,
     /// The speed of a serial port that was given none.
     pub baud: Option<u32>,
     /// The speed that it sets a serial port to before it is sent anything.
@@ -35,7 +39,7 @@ pub struct Target {
     pub wants: &'static [&'static str],
     /// What it is asked for, or sends by itself.
     pub asks: &'static str,
-    /// What it tells on the same link while the scene is played.
+    /// What it tells while the scene is played.
     pub tells: Tells,
 }
 
@@ -57,6 +61,8 @@ const USUAL: Target = Target {
     protocol: Protocol::Mavlink,
     controller: Controller::Ardupilot,
     link: None,
+    answers: None,
+    has_heading: true,
     baud: None,
     sets_baud: None,
     rest: SimTime::ZERO,
@@ -70,7 +76,7 @@ const USUAL: Target = Target {
 };
 
 /// Every target.
-pub static TARGETS: [Target; 9] = [
+pub static TARGETS: [Target; 10] = [
     Target {
         name: "px4",
         about: "PX4 on its board in HITL, over serial or USB: its EKF2 runs on HIL_SENSOR, timestamped on arrival",
@@ -184,6 +190,20 @@ pub static TARGETS: [Target; 9] = [
         tells: Tells::Attitude,
         ..USUAL
     },
+    Target {
+        name: "betaflight",
+        about: "Betaflight as a program (SITL): gyro and accelerometer over UDP, its attitude back over MSP on TCP; start it first",
+        protocol: Protocol::Betaflight,
+        controller: Controller::Betaflight(Release::Y2026M6),
+        link: Some("udpout:127.0.0.1:9003"),
+        answers: Some(5761),
+        has_heading: false,
+        rest: SimTime(5 * NANOS),
+        settings: &["gyro.rate=1 kHz", "accel.rate=1 kHz"],
+        asks: "its variant, its version, whether its gyro answers a test rate; then its attitude up to 100 times a second",
+        tells: Tells::Attitude,
+        ..USUAL
+    },
 ];
 
 impl Target {
@@ -222,6 +242,10 @@ impl Target {
     pub fn expansion(&self) -> Vec<String> {
         let mut lines = vec![format!("protocol {}", self.protocol.name())];
         lines.extend(self.link.map(|link| format!("link {link} by default")));
+        lines.extend(self.answers.map(|port| format!("answers on TCP port {port} of the same machine")));
+        if !self.has_heading {
+            lines.push("has no source of heading: one constant heading is taken out of its attitude (--align none keeps it)".into());
+        }
         lines.extend(self.baud.map(|baud| format!("{baud} baud on a serial port by default")));
         lines.extend(self.sets_baud.map(|baud| format!("changes a serial port to {baud} baud")));
         lines.extend(self.most_hz.map(|hz| format!("at most {hz} samples a second of each sensor")));

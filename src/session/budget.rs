@@ -184,7 +184,7 @@ mod tests {
             let ways = slow.ways_out.join("\n");
             let faster = format!("{name}@/dev/ttyUSB0,230400 carries 23040 bytes/s");
             assert!(!slow.fits() && ways.contains(&faster), "{ways}");
-            let usual = budget(scene, &format!("to = \"ardupilot-{name}@/dev/ttyUSB0\"\n"), 1.0);
+            let usual = budget(scene, &format!("to = \"{name}@/dev/ttyUSB0\"\n"), 1.0);
             assert_eq!((usual.capacity, usual.fits()), (Some(23_040.0), true), "{name}");
         }
     }

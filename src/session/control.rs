@@ -17,7 +17,7 @@ use super::pacer::Pacer;
 use super::pacing::{LivePacer, Pacing};
 use super::producing::Producing;
 use super::shared::TICK;
-use super::side::Side;
+use super::side::{Side, Waits};
 use super::talk::Talk;
 use super::watch::Watching;
 use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, budget, step};
@@ -97,6 +97,7 @@ impl Control {
             control.shared.stop.store(true, Ordering::Relaxed);
             drop(consumer);
             producing.abandon();
+            control.talk.borrow_mut().leave();
             here?;
             return Ok(control.never_started(&outside));
         }
@@ -118,10 +119,11 @@ impl Control {
         for output in &job.outputs {
             outputs.push(OpenOutput::open(output).await?);
         }
-        let paced = job.speed.is_paced();
+        let waits = Waits { paced: job.speed.is_paced(), rest: job.rest };
         let sides = outputs.iter_mut().map(|it| {
             let baud = it.link.baud();
-            let mut side = Side::new(&it.output, it.link.sender(), paced, job.rest);
+            let apart = it.answers.as_mut().map(Link::sender);
+            let mut side = Side::new(&it.output, it.link.sender(), apart, waits);
             side.baud = baud;
             side
         });
@@ -161,7 +163,7 @@ impl Control {
         let mut talk = self.talk.borrow_mut();
         let peers = talk.sides.iter_mut().zip(&self.outputs).map(|(side, output)| {
             let (peer, news) = side.tell();
-            (peer, Some(news).filter(|_| output.answers))
+            (peer, Some(news).filter(|_| output.speaks))
         });
         producing.start(&self.job, &self.shared, peers)
     }
@@ -182,7 +184,7 @@ impl Control {
 
     fn listen(&mut self) {
         for (i, output) in self.outputs.iter_mut().enumerate() {
-            let Some(receiver) = output.link.receiver() else { continue };
+            let Some(receiver) = output.receiver() else { continue };
             match self.job.tap.take_if(|_| i == 0) {
                 Some(tap) => self.ears.tap(receiver, tap),
                 None => self.ears.listen(i, receiver, &self.talk, self.clock),
@@ -349,7 +351,7 @@ impl Control {
         self.ears.close().await;
         let mut outcome = self.outcome(&accounts);
         for output in self.outputs {
-            output.link.close().await;
+            output.close().await;
         }
         outcome.interrupted = outside.interrupted;
         outcome.command = outside.finish().await;

@@ -11,6 +11,14 @@ pub enum SessionError {
     /// A link did not open, or broke during the wait.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// A controller that answers on a connection of its own is not there.
+    #[error("{source}; {whom} answers there: start it first, then this")]
+    Answers {
+        /// Which controller.
+        whom: &'static str,
+        /// Why there is no connection.
+        source: LinkError,
+    },
     /// Nobody connected.
     #[error("nobody came to {link} in {}: open it from the other side, or wait longer with --wait TIME, or start at once with --wait 0", seconds(*waited))]
     Nobody {

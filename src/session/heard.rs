@@ -54,11 +54,11 @@ impl Heard {
         self.speed != Speed::Max || self.lockstep || matches!(estimate.stamp, Stamp::Sample(_))
     }
 
-    /// How far an estimate at `now`, ns, is off the vehicle at rest before the scene, degrees; `None` once that is over.
-    pub(super) fn off_rest(&self, estimate: &Estimate, now: i64) -> Option<f64> {
+    /// How far an estimate at `now`, ns, is off the vehicle at rest before the scene; `None` once that is over.
+    pub(super) fn off_rest(&self, estimate: &Estimate, now: i64) -> Option<Off> {
         let at_rest = self.scene_time(now).is_none();
         let truth = || self.plan.trajectory.at(SimTime::ZERO).attitude;
-        at_rest.then(|| Off::between(truth(), estimate.attitude).total_deg)
+        at_rest.then(|| Off::between(truth(), estimate.attitude))
     }
 
     /// Places an estimate that arrived at `now` (ns on the run's clock) in scene time. `None` for an estimate from

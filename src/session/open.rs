@@ -4,7 +4,7 @@ use super::account::Account;
 use super::outside::Outside;
 use super::side::Side;
 use super::{Event, SessionError};
-use crate::link::{Address, Link, LinkError, bytes_per_second};
+use crate::link::{Address, Link, Receiver, bytes_per_second};
 use crate::report::LinkReport;
 use crate::scene::Output;
 use std::pin::pin;
@@ -19,8 +19,10 @@ const PATIENCE: Duration = Duration::from_millis(500);
 pub(super) struct OpenOutput {
     pub output: Output,
     pub link: Link,
+    /// Where the other side answers, if not there.
+    pub answers: Option<Link>,
     /// Whether something may come back on it.
-    pub answers: bool,
+    pub speaks: bool,
     /// The highest fill of the link's buffers, bytes.
     fullest: Option<usize>,
     /// The port was unplugged.
@@ -30,12 +32,31 @@ pub(super) struct OpenOutput {
 }
 
 impl OpenOutput {
-    /// Opens its link.
-    pub(super) async fn open(output: &Output) -> Result<OpenOutput, LinkError> {
+    /// Opens its link, and a connection to where the other side answers.
+    pub(super) async fn open(output: &Output) -> Result<OpenOutput, SessionError> {
         let link = Link::open(&output.to.address).await?;
-        let answers = link.answers();
-        let output = output.clone();
-        Ok(OpenOutput { output, link, answers, fullest: None, unplugged: false, abandoned: false })
+        let answers = match &output.to.answers {
+            Some(address) => Some(Link::open(address).await.map_err(|source| {
+                let whom = output.to.target.map_or(output.to.protocol.name(), |target| target.name);
+                SessionError::Answers { whom, source }
+            })?),
+            None => None,
+        };
+        let (output, speaks) = (output.clone(), link.answers());
+        Ok(OpenOutput { output, link, answers, speaks, fullest: None, unplugged: false, abandoned: false })
+    }
+
+    /// What the other side says, wherever it does; once.
+    pub(super) fn receiver(&mut self) -> Option<Receiver> {
+        self.answers.as_mut().unwrap_or(&mut self.link).receiver()
+    }
+
+    /// Lets go of its links.
+    pub(super) async fn close(self) {
+        self.link.close().await;
+        if let Some(answers) = self.answers {
+            answers.close().await;
+        }
     }
 
     /// What to connect to.

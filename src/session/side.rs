@@ -2,6 +2,7 @@
 
 use super::answers::Answers;
 use super::lane::Lane;
+use super::off::Off;
 use super::replies::Way;
 use super::settling::Settling;
 use super::step::{Step, in_lockstep};
@@ -15,6 +16,15 @@ use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender as News, channel};
+
+/// What is waited for on all links.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waits {
+    /// Whether wall time means anything.
+    pub paced: bool,
+    /// How long the vehicle rests at least before the scene.
+    pub rest: Option<SimTime>,
+}
 
 /// One other side.
 pub(super) struct Side {
@@ -36,6 +46,8 @@ pub(super) struct Side {
     protocol: &'static str,
     /// Whether a controller of its make answers while the scene is played.
     must_answer: bool,
+    /// Whether it can know its heading.
+    has_heading: bool,
     lockstep: bool,
     /// Where the scene waits for its estimator.
     settling: Option<Settling>,
@@ -43,24 +55,30 @@ pub(super) struct Side {
     notice: Option<String>,
     /// Whether a silence means anything.
     timed: bool,
+    /// The way out to its link.
     way: Way,
+    /// Where it is spoken with, if not there: the pacing thread has no part in that.
+    apart: Option<Way>,
     /// In lockstep: the number of packets it has read.
     took: Arc<AtomicU64>,
 }
 
 impl Side {
-    /// The other side of an output; `sender` is the way to its link. `paced` is whether wall time means anything, `rest`
-    /// how long the vehicle rests at least before the scene.
-    pub(super) fn new(output: &Output, sender: Sender, paced: bool, rest: Option<SimTime>) -> Side {
+    /// The other side of an output; `sender` is the way to its link, `apart` the way to where it answers, if not there.
+    /// `waits` says what is waited for.
+    pub(super) fn new(output: &Output, sender: Sender, apart: Option<Sender>, waits: Waits) -> Side {
         let tells = output.to.target.map_or(Tells::Nothing, |target| target.tells);
+        let Waits { paced, rest } = waits;
+        let dialogue = || output.to.protocol.dialogue(output.wire.controller);
         Side {
-            dialogue: output.to.protocol.dialogue(output.wire.controller),
+            dialogue: output.to.is_spoken_with().then(dialogue).flatten(),
             estimates: Vec::new(),
             bytes: 0,
             messages: 0,
             answers: Answers::default(),
             to: output.to.to_string(),
             must_answer: tells != Tells::Nothing,
+            has_heading: output.to.target.is_none_or(|target| target.has_heading),
             lockstep: in_lockstep(output),
             settling: rest.filter(|_| tells == Tells::Attitude).map(Settling::new),
             notice: None,
@@ -70,13 +88,21 @@ impl Side {
             news: None,
             protocol: output.to.protocol.name(),
             way: Way::Link(sender, 0),
+            apart: apart.map(|sender| Way::Link(sender, 0)),
             took: Arc::default(),
         }
     }
 
     /// Sends a reply. A lost reply does no harm: the other side repeats its request.
     pub(super) fn reply(&mut self, bytes: &[u8]) {
-        let _ = self.way.reply(bytes);
+        let _ = self.apart.as_mut().unwrap_or(&mut self.way).reply(bytes);
+    }
+
+    /// Sends a packet on its link, as long as the stream has not begun.
+    pub(super) fn send_ahead(&mut self, bytes: &[u8]) {
+        if let Way::Link(..) = self.way {
+            let _ = self.way.reply(bytes);
+        }
     }
 
     /// Counts another packet as read.
@@ -150,7 +176,8 @@ impl Side {
     pub(super) fn lane(&mut self, output: &Output, bridged: bool) -> Lane {
         let (sender, replies) = self.way.hand_over();
         let mut lane = Lane::new(sender, output.overload);
-        lane.replies = (self.dialogue.is_some() || bridged).then_some(replies);
+        let spoken_with = self.dialogue.is_some() && self.apart.is_none();
+        lane.replies = (spoken_with || bridged).then_some(replies);
         lane.step = in_lockstep(output).then(|| Step::new(self.counter()));
         lane
     }
@@ -164,8 +191,10 @@ impl Side {
         }
     }
 
-    /// Takes an estimate of the vehicle at rest that is `off` by so many degrees. Returns a notice.
-    pub(super) fn rests(&mut self, off: f64, now: i64) -> Option<String> {
+    /// Takes an estimate of the vehicle at rest that is `off` by so much. Returns a notice.
+    pub(super) fn rests(&mut self, off: Off, now: i64) -> Option<String> {
+        // Without a source of heading any will do.
+        let off = if self.has_heading { off.total_deg } else { libm::hypot(off.roll_deg, off.pitch_deg) };
         self.settling.as_mut()?.take(off, now)
     }
 
@@ -191,9 +220,9 @@ impl Side {
         self.dialogue.as_ref().map_or(0, |dialogue| dialogue.damaged())
     }
 
-    /// The number of replies that the link took before it was given away.
+    /// The number of replies that the link took before it was given away, and of all that went where it answers apart.
     pub(super) fn replies(&self) -> u64 {
-        self.way.written()
+        self.way.written() + self.apart.as_ref().map_or(0, Way::written)
     }
 
     /// A summary of what arrived, for the message after a timeout.
@@ -203,6 +232,9 @@ impl Side {
             (0, _) => {
                 "nothing came from it (is it switched on, wired TX to RX, and at this end of the link?)"
                     .into()
+            }
+            (_, 0) if self.apart.is_some() => {
+                format!("it answers ({bytes} bytes came), but is not to be fed yet (a notice says why)")
             }
             (_, 0) => format!(
                 "{bytes} bytes came and no {protocol} message among them (is it at this baud rate, and does it speak {protocol} on this port?)"

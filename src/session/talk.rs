@@ -55,6 +55,13 @@ impl Talk {
         }
     }
 
+    /// The run ends before the stream began.
+    pub(super) fn leave(&mut self) {
+        for link in 0..self.sides.len() {
+            self.converse(link, |dialogue, talk| dialogue.leave(&mut |said| talk.said(link, said, 0)));
+        }
+    }
+
     fn converse(&mut self, link: usize, with: impl FnOnce(&mut dyn Dialogue, &mut Talk)) {
         if let Some(mut dialogue) = self.sides[link].dialogue.take() {
             with(&mut *dialogue, self);
@@ -86,6 +93,7 @@ impl Talk {
                 }
             }
             Said::Reply(bytes) => side.reply(bytes),
+            Said::Ahead(bytes) => side.send_ahead(bytes),
             Said::Took => {
                 side.took();
                 if let Some(pacing) = &self.pacing {

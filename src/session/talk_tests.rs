@@ -5,7 +5,7 @@ use super::heard::Heard;
 use super::pace::Pace;
 use super::pacer::Pacer;
 use super::producer::{self, Task};
-use super::side::Side;
+use super::side::{Side, Waits};
 use super::step::Step;
 use super::talk::Talk;
 use super::tally::Tally;
@@ -75,7 +75,10 @@ fn output(to: &str) -> Output {
 fn letters(plan: &Arc<Plan>, shared: &Arc<Shared>, speed: Speed, capacity: usize) -> (Talk, Far) {
     let (sender, far) = memory(capacity);
     let heard = Heard::new(plan.clone(), shared.clone(), speed, false);
-    let mut talk = Talk::new(vec![Side::new(&output("csv@pty"), sender, true, None)], heard);
+    let mut talk = Talk::new(
+        vec![Side::new(&output("csv@pty"), sender, None, Waits { paced: true, rest: None })],
+        heard,
+    );
     talk.script(0, Box::new(Letters::default()));
     (talk, far)
 }

@@ -19,6 +19,9 @@ pub enum Said<'a> {
     Estimate(Estimate),
     /// Send it these bytes as soon as possible, ahead of the stream; at most [`super::MAX_PACKET`].
     Reply(&'a [u8]),
+    /// Before the stream it is to be sent this packet on the stream's own link, where the conversation is held on another;
+    /// at most [`super::MAX_PACKET`]. Once the stream goes it is lost.
+    Ahead(&'a [u8]),
     /// It has read a packet of samples and waits for the next: lockstep.
     Took,
     /// A notice for the user, given once.
@@ -83,6 +86,9 @@ pub trait Dialogue: Send {
     /// Sends what is due without a request: a question, a retransmission, a notice that nobody answers. Call it
     /// about every ten milliseconds.
     fn tick(&mut self, _now: i64, _say: &mut dyn FnMut(Said<'_>)) {}
+
+    /// Called when the run ends before the stream began, for a packet that leaves the other side with a vehicle at rest.
+    fn leave(&mut self, _say: &mut dyn FnMut(Said<'_>)) {}
 
     /// The present stage.
     fn stage(&self) -> Stage {

@@ -3,7 +3,8 @@
 use super::dialogue::{Dialogue, Peer};
 use super::row::Row;
 use super::{
-    Controller, Encoder, Now, Options, Packet, Setup, ilabs, mavlink, mip, mpu, msp, sbg, text, vectornav,
+    Controller, Encoder, Now, Options, Packet, Setup, betaflight, ilabs, mavlink, mip, mpu, msp, sbg, text,
+    vectornav,
 };
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
@@ -23,6 +24,8 @@ pub enum Protocol {
     Vectornav,
     /// MicroStrain inertial packets, for ArduPilot.
     Mip,
+    /// The state that Betaflight's SITL takes from a simulator.
+    Betaflight,
     /// User-defined data of an Inertial Labs unit, for ArduPilot and PX4.
     Ilabs,
     /// sbgECom packets of an SBG Systems unit, for ArduPilot.
@@ -34,7 +37,7 @@ pub enum Protocol {
 }
 
 /// Every protocol's row, in the order of the variants.
-static ROWS: [&Row; 9] = [
+static ROWS: [&Row; 10] = [
     &mpu::ROW,
     &mavlink::ROW,
     &msp::ROW,
@@ -42,13 +45,14 @@ static ROWS: [&Row; 9] = [
     &mip::ROW,
     &ilabs::ROW,
     &sbg::ROW,
+    &betaflight::ROW,
     &text::CSV,
     &text::JSONL,
 ];
 
 impl Protocol {
     /// Every protocol.
-    pub const ALL: [Protocol; 9] = [
+    pub const ALL: [Protocol; 10] = [
         Protocol::Mpu,
         Protocol::Mavlink,
         Protocol::Msp,
@@ -56,6 +60,7 @@ impl Protocol {
         Protocol::Mip,
         Protocol::Ilabs,
         Protocol::Sbg,
+        Protocol::Betaflight,
         Protocol::Csv,
         Protocol::Jsonl,
     ];

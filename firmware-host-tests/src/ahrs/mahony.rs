@@ -1,4 +1,6 @@
-//! INAV's estimator: a complementary filter on the rotation matrix (Mahony, Hamel, Pflimlin 2008), as a quaternion.
+//! INAV's estimator, and Betaflight's: a complementary filter on the rotation matrix (Mahony, Hamel, Pflimlin 2008), as a quaternion.
+
+use std::ops::Range;
 
 use crate::quaternion::{IDENTITY, about, conj, mul, rotate};
 
@@ -17,6 +19,8 @@ pub struct Mahony {
     k_acc: f64,
     k_mag: f64,
     k_i: f64,
+    /// What is taken for the vertical, g.
+    forces: Range<f64>,
     /// K, by which all gains are multiplied.
     pub gain: f64,
 }
@@ -24,7 +28,12 @@ pub struct Mahony {
 impl Mahony {
     /// With INAV's defaults: `ahrs_dcm_kp` and `ahrs_dcm_kp_mag` 2000, `ahrs_dcm_ki` 50, each in ten-thousandths.
     pub fn inav() -> Self {
-        Self { q: IDENTITY, bias: [0.0; 3], k_acc: 0.2, k_mag: 0.2, k_i: 0.005, gain: 1.0 }
+        Self { q: IDENTITY, bias: [0.0; 3], k_acc: 0.2, k_mag: 0.2, k_i: 0.005, forces: 0.5..1.5, gain: 1.0 }
+    }
+
+    /// With Betaflight's defaults: `imu_dcm_kp` 2500 in ten-thousandths, `imu_dcm_ki` 0, no magnetometer.
+    pub fn betaflight() -> Self {
+        Self { k_acc: 0.25, k_mag: 0.0, k_i: 0.0, forces: 0.9..1.1, ..Self::inav() }
     }
 
     /// Body (FRD) to nav (NED).
@@ -42,7 +51,7 @@ impl Mahony {
     pub fn step(&mut self, dt_s: f64, rate: [f64; 3], force: [f64; 3], field: [f64; 3]) {
         let up = rotate(conj(self.q), [0.0, 0.0, -1.0]);
         let strength = norm(force);
-        let level = if (0.5 * G..1.5 * G).contains(&strength) {
+        let level = if self.forces.contains(&(strength / G)) {
             cross(force.map(|f| f / strength), up)
         } else {
             [0.0; 3]

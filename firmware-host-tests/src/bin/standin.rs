@@ -2,7 +2,8 @@
 //! the end what came.
 //!
 //! `standin FIRMWARE PATH [--baud N] [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N]
-//! [--rate N] [--speed N] [--stops S | --stalls S,S | --restarts S,S]`; for `px4-sitl` PATH is `HOST:PORT`. Exits with 0 when the link closes, with 1 if it used
+//! [--rate N] [--speed N] [--stops S | --stalls S,S | --restarts S,S] [--dead msp|gyro]`; for `px4-sitl` PATH is `HOST:PORT`, for `betaflight`
+//! `HOST:UDP_PORT:TCP_PORT`, where it listens as the firmware does on 9003 and 5761. Exits with 0 when the link closes, with 1 if it used
 //! no samples, with 2 if it could not run.
 
 use std::io;
@@ -14,9 +15,12 @@ use std::time::{Duration, Instant};
 
 use ratetable_firmware_host_tests::board::{Device, Port};
 use ratetable_firmware_host_tests::quaternion::to_euler;
-use ratetable_firmware_host_tests::standin::{Clock, Make, Mishap, Record, Settings, StandIn, Unlucky};
+use ratetable_firmware_host_tests::standin::{
+    Clock, Make, Mishap, Program, Record, Settings, StandIn, Unlucky,
+};
 
-const USAGE: &str = "usage: standin px4|px4-sitl|px4-vectornav|px4-ilabs|ardupilot|ardupilot-mip|ardupilot-ilabs|ardupilot-sbg|inav PATH (px4-sitl: HOST:PORT) [--baud N] \
+const USAGE: &str = "usage: standin px4|px4-sitl|px4-vectornav|px4-ilabs|ardupilot|ardupilot-mip|ardupilot-ilabs|ardupilot-sbg|inav|betaflight PATH (px4-sitl: HOST:PORT, \
+                     betaflight: HOST:UDP_PORT:TCP_PORT) [--baud N] [--dead msp|gyro] \
                      [--declination-deg D] [--ahrs vqf|fusion] [--param NAME=N] [--unanswered N] [--rate HZ] \
                      [--speed TIMES] [--stops S | --stalls S,S | --restarts S,S] (after so many seconds, for so long)";
 
@@ -54,6 +58,13 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> io::Result<Record> {
+    let clock = Clock::wall(arguments.speed);
+    if arguments.make == Make::Betaflight {
+        let mut program =
+            Program::open(&arguments.path, arguments.make.firmware(&arguments.settings), clock)?;
+        program.run(&AtomicBool::new(false))?;
+        return Ok(program.record().clone());
+    }
     let port: Box<dyn Port + Send> = match arguments.make {
         Make::Px4Sitl => Box::new(Device::from(connect(&arguments.path)?)),
         _ => Box::new(Device::open(Path::new(&arguments.path), arguments.baud)?),
@@ -63,7 +74,7 @@ fn run(arguments: &Arguments) -> io::Result<Record> {
         Some(mishap) => Box::new(Unlucky::new(*make, settings, mishap)),
         None => make.firmware(settings),
     };
-    let mut standin = StandIn::new(port, firmware, Clock::wall(arguments.speed));
+    let mut standin = StandIn::new(port, firmware, clock);
     standin.run(&AtomicBool::new(false))?;
     Ok(standin.record().clone())
 }
@@ -107,6 +118,11 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
                     _ => Mishap::Restarts { at_us, for_us },
                 });
             }
+            "--dead" => match value.as_str() {
+                "msp" => settings.build.msp = false,
+                "gyro" => settings.build.gyro = false,
+                _ => return Err(format!("{word}: `{value}` is neither msp nor gyro")),
+            },
             "--param" => {
                 let (name, of) =
                     value.split_once('=').ok_or_else(|| format!("{word}: `{value}` is no NAME=N"))?;

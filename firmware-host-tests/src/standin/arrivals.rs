@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ratetable_protocols::{ilabs, mavlink, mip, msp, sbg, vectornav};
+use ratetable_protocols::{betaflight, ilabs, mavlink, mip, msp, sbg, vectornav};
 
 /// How a link's packets are told apart, by who only counts packets of samples.
 pub enum Framing {
@@ -18,6 +18,8 @@ pub enum Framing {
     Ilabs(Box<ilabs::Decoder>),
     /// An SBG Systems unit's IMU_SHORT.
     Sbg(Box<sbg::Decoder>),
+    /// What Betaflight's SITL takes from a simulator.
+    Betaflight(Box<betaflight::Decoder>),
 }
 
 impl Framing {
@@ -40,6 +42,7 @@ impl Framing {
             Self::Sbg(decoder) => decoder.feed(&bytes, |received| {
                 whole |= received.is_ok_and(|received| received.id == sbg::imu_short::ID);
             }),
+            Self::Betaflight(decoder) => decoder.feed(&bytes, |received| whole |= received.is_ok()),
         }
         whole
     }

@@ -3,9 +3,12 @@
 use std::fmt;
 use std::str::FromStr;
 
-use ratetable_protocols::{ilabs, mavlink, mip, msp, sbg, vectornav};
+use ratetable_protocols::{betaflight, ilabs, mavlink, mip, msp, sbg, vectornav};
 
-use super::{Ardupilot, Firmware, Framing, Ilabs, Inav, Mip, Parameters, Px4, Px4Sitl, Px4Vectornav, Sbg};
+use super::{
+    Ardupilot, Betaflight, Build, Firmware, Framing, Ilabs, Inav, Mip, Parameters, Px4, Px4Sitl,
+    Px4Vectornav, Sbg,
+};
 use crate::ahrs::Kind;
 
 /// A firmware on a kind of link.
@@ -29,6 +32,8 @@ pub enum Make {
     Px4Ilabs,
     /// INAV.
     Inav,
+    /// Betaflight as a program.
+    Betaflight,
 }
 
 /// A firmware's parameters.
@@ -44,6 +49,8 @@ pub struct Settings {
     pub unanswered: u64,
     /// ArduPilot and PX4 with a VN-100: packets of samples a second that they ask it for.
     pub rate_hz: u32,
+    /// Betaflight: how it is built, and what went wrong in its boot.
+    pub build: Build,
 }
 
 impl Default for Settings {
@@ -55,13 +62,14 @@ impl Default for Settings {
             parameters: Parameters::new(),
             unanswered: 100,
             rate_hz: 100,
+            build: Build::default(),
         }
     }
 }
 
 impl Make {
     /// Every make.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Px4,
         Self::Px4Sitl,
         Self::Px4Vectornav,
@@ -71,6 +79,7 @@ impl Make {
         Self::ArdupilotSbg,
         Self::Px4Ilabs,
         Self::Inav,
+        Self::Betaflight,
     ];
 
     /// As it is called.
@@ -85,6 +94,7 @@ impl Make {
             Self::ArdupilotSbg => "ardupilot-sbg",
             Self::Px4Ilabs => "px4-ilabs",
             Self::Inav => "inav",
+            Self::Betaflight => "betaflight",
         }
     }
 
@@ -100,6 +110,7 @@ impl Make {
             Self::ArdupilotSbg => Box::new(Sbg::new(settings)),
             Self::Px4Ilabs => Box::new(Ilabs::px4(settings)),
             Self::Inav => Box::new(Inav::new(settings)),
+            Self::Betaflight => Box::new(Betaflight::new(settings)),
         }
     }
 
@@ -112,6 +123,7 @@ impl Make {
             Self::ArdupilotIlabs | Self::Px4Ilabs => Framing::Ilabs(Box::new(ilabs::Decoder::new())),
             Self::ArdupilotSbg => Framing::Sbg(Box::new(sbg::Decoder::new())),
             Self::Inav => Framing::Msp(Box::new(msp::Decoder::new())),
+            Self::Betaflight => Framing::Betaflight(Box::new(betaflight::Decoder::new())),
         }
     }
 }

@@ -118,13 +118,13 @@ mod tests {
     #[test]
     fn frames_that_are_not_known_are_reported_by_their_command() {
         let mut bytes = [0; MAX_LEN];
-        // MSP_STATUS (101) with a payload of one byte.
-        let frame = [b'$', b'X', b'>', 0, 101, 0, 1, 0, 7];
+        // MSP_SERVO (103) with a payload of one byte.
+        let frame = [b'$', b'X', b'>', 0, 103, 0, 1, 0, 7];
         bytes[..9].copy_from_slice(&frame);
         bytes[9] = CRC.checksum(&frame[3..]);
         let mut seen = None;
         Decoder::new().feed(&bytes[..10], |received| seen = Some(received));
-        let expected = Received { direction: Direction::Reply, command: 101, message: None };
+        let expected = Received { direction: Direction::Reply, command: 103, message: None };
         assert_eq!(seen, Some(Ok(expected)));
     }
 }

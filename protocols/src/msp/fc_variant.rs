@@ -11,6 +11,9 @@ pub const DIRECTION: Direction = Direction::Reply;
 /// [`Repr::name`] of INAV.
 pub const INAV: [u8; 4] = *b"INAV";
 
+/// [`Repr::name`] of Betaflight.
+pub const BETAFLIGHT: [u8; 4] = *b"BTFL";
+
 payload! {
     little, exactly, "the payload of an `fc_variant` reply";
     /// Bytes of payload.

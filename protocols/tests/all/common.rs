@@ -2,7 +2,7 @@
 
 use ratetable_protocols::mavlink::{self, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
-use ratetable_protocols::{ilabs, mip, msp, sbg, vectornav};
+use ratetable_protocols::{betaflight, ilabs, mip, msp, sbg, vectornav};
 use serde_json::Value;
 
 /// One golden packet: its JSON and its bytes.
@@ -297,6 +297,27 @@ pub fn msp_message(json: &Value) -> msp::Message {
             minor: int(&f["minor"]),
         }),
         "fc_variant" => msp::Message::FcVariant(msp::fc_variant::Repr { name: ints(&f["name"]) }),
+        "fc_version" => msp::Message::FcVersion(msp::fc_version::Repr {
+            major: int(&f["major"]),
+            minor: int(&f["minor"]),
+            patch: int(&f["patch"]),
+        }),
+        "status" => msp::Message::Status(msp::status::Repr {
+            cycle_time: int(&f["cycle_time"]),
+            bus_errors: int(&f["bus_errors"]),
+            sensors: int(&f["sensors"]),
+            modes: int(&f["modes"]),
+            profile: int(&f["profile"]),
+            load: int(&f["load"]),
+        }),
+        "raw_imu" => msp::Message::RawImu(msp::raw_imu::Repr {
+            accel: ints(&f["accel"]),
+            gyro: ints(&f["gyro"]),
+            mag: ints(&f["mag"]),
+        }),
+        "attitude_quaternion" => {
+            msp::Message::AttitudeQuaternion(msp::attitude_quaternion::Repr { q: ints(&f["q"]) })
+        }
         other => panic!("no message {other}"),
     }
 }
@@ -435,5 +456,23 @@ pub fn mip_packet(json: &Value) -> mip::imu::Repr {
         accel: vector("accel"),
         gyro: vector("gyro"),
         time: None,
+    }
+}
+
+fn doubles<const N: usize>(value: &Value) -> [f64; N] {
+    std::array::from_fn(|i| value[i].as_f64().unwrap())
+}
+
+/// The `betaflight` packet that a vector describes.
+pub fn betaflight_packet(json: &Value) -> betaflight::state::Repr {
+    let f = &json["fields"];
+    betaflight::state::Repr {
+        timestamp: f["timestamp"].as_f64().unwrap(),
+        gyro: doubles(&f["gyro"]),
+        accel: doubles(&f["accel"]),
+        orientation: doubles(&f["orientation"]),
+        velocity: doubles(&f["velocity"]),
+        position: doubles(&f["position"]),
+        pressure: f["pressure"].as_f64().unwrap(),
     }
 }

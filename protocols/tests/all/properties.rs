@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use ratetable_protocols::mavlink::{self, Header, Message, Version};
 use ratetable_protocols::mpu::{self, Packet};
-use ratetable_protocols::{Error, cobs, ilabs, mip, msp, sbg, vectornav};
+use ratetable_protocols::{Error, betaflight, cobs, ilabs, mip, msp, sbg, vectornav};
 
 fn any_packet() -> impl Strategy<Value = Packet> {
     prop_oneof![
@@ -44,9 +44,8 @@ fn any_header() -> impl Strategy<Value = Header> {
 
 /// Any frame, made from any payload.
 fn any_frame() -> impl Strategy<Value = msp::Message> {
-    use msp::{
-        Direction, Message, api_version, attitude, fc_variant, simulator, simulator_air, simulator_reply,
-    };
+    use msp::{Direction, Message, api_version, attitude, attitude_quaternion, fc_variant, fc_version};
+    use msp::{raw_imu, simulator, simulator_air, simulator_reply, status};
     let direction = select(vec![Direction::Request, Direction::Reply, Direction::Refusal]);
     prop_oneof![
         (direction, any::<u16>()).prop_map(|(direction, command)| Message::Empty { direction, command }),
@@ -56,6 +55,10 @@ fn any_frame() -> impl Strategy<Value = msp::Message> {
         payload(Direction::Reply, attitude::COMMAND, attitude::LEN),
         payload(Direction::Reply, api_version::COMMAND, api_version::LEN),
         payload(Direction::Reply, fc_variant::COMMAND, fc_variant::LEN),
+        payload(Direction::Reply, fc_version::COMMAND, fc_version::LEN),
+        payload(Direction::Reply, status::COMMAND, status::LEN),
+        payload(Direction::Reply, raw_imu::COMMAND, raw_imu::LEN),
+        payload(Direction::Reply, attitude_quaternion::COMMAND, attitude_quaternion::LEN),
     ]
 }
 
@@ -116,6 +119,21 @@ fn any_mip() -> impl Strategy<Value = mip::imu::Repr> {
     let vector = any::<Option<[f32; 3]>>;
     (any::<Option<f32>>(), vector(), vector(), vector(), option::of(any_time()))
         .prop_map(|(pressure, mag, accel, gyro, time)| mip::imu::Repr { pressure, mag, accel, gyro, time })
+}
+
+/// Any state of a vehicle that is one.
+fn any_state() -> impl Strategy<Value = betaflight::state::Repr> {
+    let value = || -1e9..1e9_f64;
+    let three = move || prop::array::uniform3(value());
+    let turn =
+        prop::array::uniform4(-1.0..1.0_f64).prop_filter("a direction", |q| q.iter().any(|x| x.abs() > 0.1));
+    (value(), three(), three(), turn, three(), three(), value()).prop_map(
+        |(timestamp, gyro, accel, turn, velocity, position, pressure)| {
+            let length = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let orientation = turn.map(|x| x / length);
+            betaflight::state::Repr { timestamp, gyro, accel, orientation, velocity, position, pressure }
+        },
+    )
 }
 
 fn any_time() -> impl Strategy<Value = mip::imu::Time> {
@@ -402,6 +420,46 @@ proptest! {
     }
 
     #[test]
+    fn betaflight_packets_come_back_however_the_stream_is_cut(
+        packets in vec(any_state(), 1..10),
+        cut in 1_usize..300,
+    ) {
+        let mut stream = Vec::new();
+        for packet in &packets {
+            let mut out = [0; betaflight::MAX_LEN];
+            let len = betaflight::encode(packet, &mut out).unwrap();
+            stream.extend_from_slice(&out[..len]);
+        }
+        let mut back = Vec::new();
+        let mut decoder = betaflight::Decoder::new();
+        for piece in stream.chunks(cut) {
+            decoder.feed(piece, |received| back.push(received.unwrap()));
+        }
+        prop_assert_eq!(back, packets);
+    }
+
+    /// What looks like a packet by chance may swallow the next one, for nothing marks a start: the second is found.
+    #[test]
+    fn betaflights_bytes_do_not_panic_and_a_packet_behind_them_is_found(
+        rubbish in rubbish(),
+        packets in vec(any_state(), 2),
+    ) {
+        let mut found = 0;
+        let mut decoder = betaflight::Decoder::new();
+        let mut on = |received: Result<betaflight::state::Repr, Error>| {
+            found += usize::from(received.is_ok_and(|received| packets.contains(&received)));
+        };
+        decoder.feed(&rubbish, &mut on);
+        for packet in &packets {
+            let mut out = [0; betaflight::MAX_LEN];
+            let len = betaflight::encode(packet, &mut out).unwrap();
+            decoder.feed(&out[..len], &mut on);
+        }
+        decoder.finish(&mut on);
+        prop_assert!(found >= 1);
+    }
+
+    #[test]
     fn controllers_bytes_do_not_panic_and_the_packet_behind_them_is_found(
         rubbish in rubbish(),
         frame in any_frame(),
@@ -480,6 +538,12 @@ proptest! {
                 let _ = msp::Message::parse(direction, command, &bytes);
             }
         }
+        if let Ok(state) = betaflight::state::Payload::new_checked(&bytes) {
+            let _ = betaflight::state::Repr::parse(&state).is_plausible();
+        }
+        if let Ok(motors) = betaflight::motors::Payload::new_checked(&bytes) {
+            let _ = betaflight::motors::Repr::parse(&motors);
+        }
         if let Ok(fields) = mip::imu::Payload::new_checked(&bytes) {
             let _ = mip::imu::Repr::parse(&fields);
         }
@@ -517,7 +581,9 @@ proptest! {
         inertial in any_mip(),
         told in any_ilabs(),
         unit in any_sbg(),
+        state in any_state(),
     ) {
+        needs_its_length(|out| betaflight::encode(&state, out))?;
         needs_its_length(|out| msp::encode(&frame, out))?;
         needs_its_length(|out| vectornav::encode(&packet, out))?;
         needs_its_length(|out| mip::encode(&inertial, out))?;

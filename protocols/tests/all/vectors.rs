@@ -1,10 +1,10 @@
 //! Golden packets made by other implementations, both ways, and shown by the documentation.
 
 use super::common::{
-    ilabs_frame, int, mavlink_header, mavlink_message, mip_packet, mpu_packet, msp_direction, msp_message,
-    sbg_packet, vectornav_packet, vectors,
+    betaflight_packet, ilabs_frame, int, mavlink_header, mavlink_message, mip_packet, mpu_packet,
+    msp_direction, msp_message, sbg_packet, vectornav_packet, vectors,
 };
-use ratetable_protocols::{ilabs, mavlink, mip, mpu, msp, sbg, vectornav};
+use ratetable_protocols::{betaflight, ilabs, mavlink, mip, mpu, msp, sbg, vectornav};
 
 #[test]
 fn mpu_packets_are_the_golden_bytes() {
@@ -128,6 +128,33 @@ fn sbg_packets_are_the_golden_bytes_and_back() {
 }
 
 #[test]
+fn betaflight_packets_are_the_golden_bytes_and_back() {
+    for vector in vectors("betaflight") {
+        let packet = betaflight_packet(&vector.json);
+        let mut out = [0xee; betaflight::MAX_LEN];
+        let len = betaflight::encode(&packet, &mut out).unwrap();
+        assert_eq!(out[..len], vector.bytes, "{}", vector.name());
+        let mut seen = Vec::new();
+        betaflight::Decoder::new().feed(&vector.bytes, |received| seen.push(received));
+        assert_eq!(seen, [Ok(packet)], "{}", vector.name());
+    }
+}
+
+/// It has no checksum, so that a flipped bit is another packet or none, and never this one.
+#[test]
+fn a_golden_betaflight_packet_with_one_bit_flipped_is_another() {
+    for vector in vectors("betaflight") {
+        let whole = betaflight_packet(&vector.json);
+        flip_every_bit(&vector.bytes, |hurt| {
+            let differ = |received: Result<_, _>| assert_ne!(received, Ok(whole), "{}", vector.name());
+            let mut decoder = betaflight::Decoder::new();
+            decoder.feed(hurt, differ);
+            decoder.finish(differ);
+        });
+    }
+}
+
+#[test]
 fn every_golden_packet_with_one_bit_flipped_is_refused() {
     for vector in vectors("mpu") {
         flip_every_bit(&vector.bytes, |hurt| {
@@ -210,7 +237,7 @@ fn flip_every_bit(bytes: &[u8], mut check: impl FnMut(&[u8])) {
 
 #[test]
 fn the_documentation_shows_every_vector() {
-    for format in ["mpu", "mavlink", "msp", "vectornav", "mip", "ilabs", "sbg"] {
+    for format in ["mpu", "mavlink", "msp", "vectornav", "mip", "ilabs", "sbg", "betaflight"] {
         let path = format!("{}/../docs/wire/{format}.md", env!("CARGO_MANIFEST_DIR"));
         let page = std::fs::read_to_string(&path).unwrap();
         for vector in vectors(format) {

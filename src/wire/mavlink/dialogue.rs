@@ -8,6 +8,7 @@ mod asking;
 mod parameters;
 mod px4;
 mod steady;
+
 mod voice;
 
 use crate::geometry::{Attitude, Euler};
@@ -76,7 +77,7 @@ impl Mavlink {
         let way = match controller {
             Some(Controller::Px4) => Way::Hitl(Box::default()),
             Some(Controller::Px4Sitl) => Way::Sitl { took: false },
-            Some(Controller::Px4Vectornav | Controller::Ardupilot | Controller::Inav) | None => Way::Any,
+            Some(_) | None => Way::Any,
         };
         Mavlink {
             decoder: Decoder::new(),

@@ -62,10 +62,12 @@ fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
     let msp = [1f64.to_radians() / 16.0, 1e-3 * crate::earth::STANDARD_GRAVITY, 0.0][kind as usize];
     // A millionth of a g of 9.8106 m/s², a hundred thousandth of a degree, ten nanotesla.
     let ilabs = [1e-5_f64.to_radians(), 9.8106e-6, 0.01][kind as usize];
+    let betaflight = [1f64.to_radians() / 16.384, crate::earth::STANDARD_GRAVITY / 256.0, 0.0][kind as usize];
     match protocol {
         Protocol::Ilabs => 0.5 * ilabs * (1.0 + 1e-6),
         Protocol::Sbg if kind == SensorKind::Gyro => 0.5 / 67_108_864.0 * (1.0 + 1e-6),
         Protocol::Sbg if kind == SensorKind::Accel => 0.5 / 1_048_576.0 * (1.0 + 1e-6),
+        Protocol::Betaflight => 0.5 * betaflight * (1.0 + 1e-9),
         Protocol::Mpu => 0.5 * count * (1.0 + 1e-9),
         Protocol::Msp => 0.5 * msp * (1.0 + 1e-9),
         Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip | Protocol::Sbg => {
@@ -77,7 +79,7 @@ fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
 
 /// The first difference between the samples and the readings that were sent.
 fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample]) -> Option<String> {
-    for kind in SensorKind::TRIADS {
+    for kind in SensorKind::TRIADS.into_iter().filter(|kind| protocol.carries(*kind)) {
         let sent: Vec<_> = sent.iter().filter(|(_, reading)| reading.kind == kind).collect();
         let came: Vec<_> = samples.iter().filter(|sample| sample.kind == kind).collect();
         if sent.len() != came.len() {
@@ -88,7 +90,7 @@ fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample
                 Protocol::Mpu | Protocol::Mavlink | Protocol::Sbg => Some(1000),
                 Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => Some(1),
                 Protocol::Ilabs => Some(1_000_000),
-                Protocol::Msp | Protocol::Mip => None,
+                Protocol::Msp | Protocol::Mip | Protocol::Betaflight => None,
             };
             if sample.t != unit.map(|unit| SimTime(t.0 / unit * unit)) {
                 return Some(format!("{kind} at {:?}, sent for {t}", sample.t));
@@ -123,8 +125,10 @@ fn every_sample_comes_back_with_its_time_and_value() {
                 continue;
             }
             // These carry every sensor in every packet, at most 100 times a second: compare where all are new.
-            let tells_all =
-                matches!(protocol, Protocol::Msp | Protocol::Vectornav | Protocol::Mip | Protocol::Ilabs);
+            let tells_all = matches!(
+                protocol,
+                Protocol::Msp | Protocol::Vectornav | Protocol::Mip | Protocol::Ilabs | Protocol::Betaflight
+            );
             if tells_all && plan.sensors[2].rate != Rate::hz(100) {
                 continue;
             }
@@ -155,8 +159,10 @@ fn a_swapped_axis_is_noticed() {
             |[x, y, z]| [1.01 * x, 1.01 * y, 1.01 * z],
         ];
         for change in changes {
-            // The field in `msp` has no value that could be wrong.
-            let has_value = |kind: &SensorKind| (protocol, *kind) != (Protocol::Msp, SensorKind::Mag);
+            // The field in `msp` has no value to be wrong, and `betaflight` has no field.
+            let has_value = |kind: &SensorKind| {
+                protocol.carries(*kind) && (protocol, *kind) != (Protocol::Msp, SensorKind::Mag)
+            };
             for kind in SensorKind::TRIADS.into_iter().filter(has_value) {
                 let changed = |sample: &Sample| match sample.value {
                     Some(value) if sample.kind == kind => {

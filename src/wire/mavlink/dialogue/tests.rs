@@ -53,7 +53,7 @@ impl Word {
     fn of(said: &Said<'_>) -> Word {
         match said {
             Said::Estimate(estimate) => Word::Estimate(*estimate),
-            Said::Reply(bytes) => Word::Reply(bytes.to_vec()),
+            Said::Reply(bytes) | Said::Ahead(bytes) => Word::Reply(bytes.to_vec()),
             Said::Took => Word::Took,
             Said::Notice(notice) => Word::Notice(notice.clone()),
             Said::Restart(notice) => Word::Restart(notice.clone()),

@@ -11,7 +11,7 @@ use ratetable::scene::{Destination, Output, Plan};
 use ratetable::score::{self, Figures, Timed};
 use ratetable::time::SimTime;
 use ratetable::wire::dialogue::{Dialogue, Estimate, Said, Stage, Stamp};
-use ratetable::wire::{self, Now, Packet, Setup};
+use ratetable::wire::{self, Controller, Now, Packet, Setup};
 use ratetable_firmware_host_tests::standin::{Firmware, Make, Record, Settings};
 
 use crate::emulator::play::scene;
@@ -92,6 +92,10 @@ pub fn settings(case: &Case, plan: &Plan) -> Settings {
 /// The packets of a rest and then of the scene.
 pub fn packets(plan: &Plan, case: &Case, dialogue: Option<&dyn Dialogue>) -> Vec<Packet> {
     let output = Output::to(case.to.parse::<Destination>().expect("a destination"));
+    packets_to(plan, case, &output, dialogue)
+}
+
+fn packets_to(plan: &Plan, case: &Case, output: &Output, dialogue: Option<&dyn Dialogue>) -> Vec<Packet> {
     let setup = Setup {
         sensors: &plan.sensors,
         axes: plan.axes,
@@ -134,6 +138,8 @@ struct Table {
     answers: Vec<(Estimate, u64)>,
     notices: Vec<String>,
     to_firmware: Vec<u8>,
+    /// What goes on the samples' own link ahead of them, where it is spoken with on another.
+    ahead: Vec<Vec<u8>>,
 }
 
 impl Table {
@@ -142,16 +148,21 @@ impl Table {
         let mut out = Vec::new();
         self.firmware.turn(now_us, &mut out);
         let answers = std::mem::take(&mut self.to_firmware);
-        for bytes in [&answers[..], bytes] {
-            if !bytes.is_empty() {
-                self.firmware.receive(bytes, now_us, &mut out);
-            }
+        if !answers.is_empty() {
+            self.firmware.receive_apart(&answers, now_us, &mut out);
         }
-        let Self { dialogue: Some(dialogue), answers, notices, to_firmware, .. } = self else { return };
+        let ahead = std::mem::take(&mut self.ahead);
+        for bytes in ahead.iter().map(Vec::as_slice).chain([bytes]).filter(|bytes| !bytes.is_empty()) {
+            self.firmware.receive(bytes, now_us, &mut out);
+        }
+        let Self { dialogue: Some(dialogue), answers, notices, to_firmware, ahead, .. } = self else {
+            return;
+        };
         let now = now_us as i64 * 1000;
         let mut say = |said: Said<'_>| match said {
             Said::Estimate(estimate) => answers.push((estimate, now_us)),
             Said::Reply(bytes) => to_firmware.extend_from_slice(bytes),
+            Said::Ahead(bytes) => ahead.push(bytes.to_vec()),
             Said::Notice(notice) | Said::Restart(notice) => notices.push(notice),
             Said::Took | Said::Pass(_) | Said::Speed(_) => {}
         };
@@ -174,13 +185,26 @@ pub fn converse(
     settings: &Settings,
     alter: impl FnOnce(Vec<(u64, Vec<u8>)>, u64) -> Vec<(u64, Vec<u8>)>,
 ) -> Told {
-    let output = Output::to(case.to.parse::<Destination>().expect("a destination"));
+    converse_with(case, plan, None, settings, alter)
+}
+
+/// [`converse`] in the ways of another controller than the target's own.
+pub fn converse_with(
+    case: &Case,
+    plan: &Plan,
+    controller: Option<Controller>,
+    settings: &Settings,
+    alter: impl FnOnce(Vec<(u64, Vec<u8>)>, u64) -> Vec<(u64, Vec<u8>)>,
+) -> Told {
+    let mut output = Output::to(case.to.parse::<Destination>().expect("a destination"));
+    output.wire.controller = controller.or(output.wire.controller);
     let mut table = Table {
         dialogue: output.to.protocol.dialogue(output.wire.controller),
         firmware: case.make.firmware(settings),
         answers: Vec::new(),
         notices: Vec::new(),
         to_firmware: Vec::new(),
+        ahead: Vec::new(),
     };
     let mut now_us = 0;
     while table.stage() == Stage::Silent && now_us < HEARD_US {
@@ -188,7 +212,7 @@ pub fn converse(
         now_us += STEP_US;
     }
     let start_us = now_us;
-    let packets = packets(plan, case, table.dialogue.as_deref());
+    let packets = packets_to(plan, case, &output, table.dialogue.as_deref());
     let stream = packets.iter().map(|packet| (packet.due.0 as u64 / 1000, packet.bytes().to_vec())).collect();
     let rest_us = case.rest_s * 1_000_000;
     for (at_us, bytes) in alter(stream, rest_us) {
