@@ -106,7 +106,7 @@ fn beat() -> Vec<u8> {
 #[test]
 fn px4_in_lockstep_gets_each_packet_after_its_answer_to_the_one_before() {
     // Any free port: the program says which it was given.
-    let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     for speed in ["max", "4"] {
         let run = Run::start(&format!("px4-sitl@tcpin:{port}"), &["--speed", speed]);
         let mut stream = loop {
