@@ -22,6 +22,12 @@ impl Asking {
         Some(Asking { dialogue, sender, told: Vec::new() })
     }
 
+    /// Greets the controller: some say little to whom they do not hear.
+    pub(super) fn greet(&mut self, greeting: &[u8]) {
+        // If it is lost, the next one follows.
+        let _ = self.sender.send(greeting);
+    }
+
     /// Reads bytes that arrived at `now`, ns. Returns notices.
     pub(super) fn hear(&mut self, bytes: &[u8], now: i64) -> Vec<String> {
         self.converse(now, |dialogue, say| dialogue.hear(bytes, now, say))

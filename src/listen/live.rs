@@ -42,8 +42,8 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
         };
         // A UDP sender that waits for a first datagram gets a greeting, and so does a controller that is asked for its
         // attitude. Nothing is sent to others.
-        let greets = job.attitude || matches!(job.address, Address::UdpOut(_));
-        let greeted = greets.then(|| link.sender());
+        let greeted = matches!(job.address, Address::UdpOut(_)) && !job.attitude;
+        let greeted = greeted.then(|| link.sender());
         let asking = job.attitude.then(|| Asking::new(job.protocol, link.sender())).flatten();
         let meter = if live { Meter::new(job.protocol) } else { Meter::recorded(job.protocol) };
         let clock = WallClock::start();
@@ -101,7 +101,7 @@ impl Ear<'_> {
                     let elapsed = first.map_or(Duration::ZERO, |first: Instant| first.elapsed());
                     on(Event::Progress(Progress { elapsed, meter: &self.meter, rates: &recent.rates }));
                 }
-                _ = greetings.tick(), if self.greeted.is_some() => {
+                _ = greetings.tick(), if self.greeted.is_some() || self.asking.is_some() => {
                     self.greet(greeting);
                     greeting = greeting.wrapping_add(1);
                 }
@@ -136,9 +136,13 @@ impl Ear<'_> {
     }
 
     fn greet(&mut self, seq: u8) {
+        let greeting = self.job.protocol.greeting(seq);
         if let Some(sender) = &mut self.greeted {
             // If it is lost, the next one follows.
-            let _ = sender.send(&self.job.protocol.greeting(seq));
+            let _ = sender.send(&greeting);
+        }
+        if let Some(asking) = &mut self.asking {
+            asking.greet(&greeting);
         }
     }
 

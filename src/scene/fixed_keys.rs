@@ -125,7 +125,7 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     (
         "output",
         "answers",
-        "for `betaflight`: where it answers MSP (default: TCP port 5761 of the machine in `to`, such as \"tcpout:127.0.0.1:5761\")",
+        "for `betaflight`: where it answers MSP (default: TCP port 5761 of the machine in `to`, such as \"tcpout:127.0.0.1:5761\"); for `px4-sitl`: where it tells its attitude (default: \"udpin:127.0.0.1:14550\")",
     ),
     (
         "output",

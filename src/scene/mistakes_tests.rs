@@ -397,7 +397,10 @@ const REST: &[Case] = &[
     (gyro!("[[output]]\nto = \"csv@-\"\nlayout = \"burst\"\n"), &[("6:10", "is for `mpu`, not for `csv`")]),
     (
         gyro!("[[output]]\nto = \"mpu@pty\"\nversion = 1\nmessages = []\n"),
-        &[("6:11", "is for `mavlink`, not for `mpu`"), ("7:12", "is for `mavlink`, not for `mpu`")],
+        &[
+            ("6:11", "is for `mavlink` and `betaflight`, not for `mpu`"),
+            ("7:12", "is for `mavlink`, not for `mpu`"),
+        ],
     ),
     (
         gyro!("[[output]]\nto = \"betaflight\"\nversion = \"2025.6\"\nmessages = []\n"),
@@ -407,7 +410,7 @@ const REST: &[Case] = &[
         gyro!(
             "[[output]]\nto = \"betaflight\"\nanswers = \"udpout:127.0.0.1:1\"\n[[output]]\nto = \"inav@pty\"\nanswers = \"tcpout:127.0.0.1:1\"\n"
         ),
-        &[("6:11", "takes tcpout:ADDR:PORT"), ("9:11", "is for `betaflight`, not for `inav@pty`")],
+        &[("6:11", "takes tcpout:ADDR:PORT"), ("9:11", "is for `betaflight` and `px4-sitl`, not for `inav`")],
     ),
     (
         gyro!("[[output]]\nto = \"mavlink@pty\"\nversion = 3\nmessages = [\"RAW_IMU\", \"RAW_IMUS\"]\n"),

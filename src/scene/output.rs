@@ -20,7 +20,7 @@ pub struct Destination {
     pub address: Address,
     /// The flight controller that was named in place of a protocol.
     pub target: Option<&'static Target>,
-    /// Where its controller answers, if not on the link itself.
+    /// Where its controller answers, if not on the link itself, or tells its attitude besides (a UDP port).
     pub answers: Option<Address>,
 }
 
@@ -33,6 +33,16 @@ impl Destination {
     /// Whether somebody at the other end is spoken with: who answers elsewhere is not reached over every link.
     pub fn is_spoken_with(&self) -> bool {
         self.target.is_none_or(|target| target.answers.is_none()) || self.answers.is_some()
+    }
+
+    /// Where its controller is spoken with, if not on the link itself.
+    pub fn apart(&self) -> Option<&Address> {
+        self.answers.as_ref().filter(|address| !matches!(address, Address::UdpIn(_)))
+    }
+
+    /// Where its controller tells its attitude besides.
+    pub fn overheard(&self) -> Option<&Address> {
+        self.answers.as_ref().filter(|address| matches!(address, Address::UdpIn(_)))
     }
 
     /// The speed at which the packets go out, baud, where there is one: of a serial port that which the controller sets.
@@ -74,8 +84,12 @@ impl FromStr for Destination {
         if let Some(baud) = target.and_then(|target| target.baud) {
             address = address.or_baud(baud);
         }
-        let answers = match (target.and_then(|target| target.answers), &address) {
-            (Some(port), Address::UdpOut(place)) => Some(Address::TcpOut(Endpoint::new(&place.host, port))),
+        let (asked, told) = target.map_or((None, None), |target| (target.answers, target.overheard));
+        let answers = match (asked, told, &address) {
+            (Some(port), _, Address::UdpOut(place)) => {
+                Some(Address::TcpOut(Endpoint::new(&place.host, port)))
+            }
+            (_, Some(port), _) => Some(Address::UdpIn(Endpoint::new("127.0.0.1", port))),
             _ => None,
         };
         Ok(Destination { protocol, address, target, answers })
@@ -249,14 +263,20 @@ fn betaflight(section: &Section<'_>) -> Release {
 /// Where a controller answers that does so on a connection of its own.
 fn answers(section: &Section<'_>, to: &Destination) -> Option<Address> {
     let address = section.text("answers", None)?.parse::<Address>();
-    let apart = to.target.is_some_and(|target| target.answers.is_some());
-    match address {
-        // Said already, of a protocol that has no such key.
-        _ if !apart => {}
-        Ok(address @ Address::TcpOut(_)) => return Some(address),
-        Ok(address) => {
-            section.mistake("answers", format!("takes tcpout:ADDR:PORT, not `{address}`"));
+    let (asked, told) = to.target.map_or((None, None), |target| (target.answers, target.overheard));
+    let right = match (asked, told) {
+        (Some(_), _) => "tcpout:ADDR:PORT",
+        (_, Some(_)) => "udpin:ADDR:PORT",
+        _ => {
+            let name = to.target.map_or(to.protocol.name(), |target| target.name);
+            section.mistake("answers", format!("is for `betaflight` and `px4-sitl`, not for `{name}`"));
+            return None;
         }
+    };
+    match address {
+        Ok(address @ Address::TcpOut(_)) if asked.is_some() => return Some(address),
+        Ok(address @ Address::UdpIn(_)) if told.is_some() => return Some(address),
+        Ok(address) => section.mistake("answers", format!("takes {right}, not `{address}`")),
         Err(error) => section.mistake("answers", error.to_string()),
     }
     None

@@ -19,6 +19,10 @@ pub struct Target {
     pub link: Option<&'static str>,
     /// The TCP port of the same machine at which it answers, where that is not on the link itself.
     pub answers: Option<u16>,
+    /// The UDP port of this machine to which it tells its attitude, where that is not on the link itself.
+    pub overheard: Option<u16>,
+    /// What to do where nobody comes to the link.
+    pub nobody: &'static str,
     /// Whether it has a source of heading: without one, a constant heading says nothing of it.
     pub has_heading: bool,
     /// The speed of a serial port that was given none.
@@ -62,6 +66,8 @@ const USUAL: Target = Target {
     controller: Controller::Ardupilot,
     link: None,
     answers: None,
+    overheard: None,
+    nobody: "",
     has_heading: true,
     baud: None,
     sets_baud: None,
@@ -97,7 +103,10 @@ pub static TARGETS: [Target; 10] = [
         link: Some("tcpin:4560"),
         // "Preflight Fail: barometer 0 missing" without one (measured).
         wants: &["baro.rate=50 Hz"],
-        asks: "HIL_ACTUATOR_CONTROLS, one for each HIL_SENSOR",
+        asks: "HIL_ACTUATOR_CONTROLS, one for each HIL_SENSOR; its attitude is heard on UDP port 14550",
+        // Where it looks for a ground station.
+        overheard: Some(14_550),
+        nobody: "start PX4, or restart it: after a run it does not connect again",
         tells: Tells::Steps,
         ..USUAL
     },

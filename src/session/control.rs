@@ -117,7 +117,7 @@ impl Control {
     async fn open(job: Job, absence: Duration) -> Result<Control, SessionError> {
         let mut outputs = Vec::new();
         for output in &job.outputs {
-            outputs.push(OpenOutput::open(output).await?);
+            outputs.push(OpenOutput::open(output, job.ground.is_some()).await?);
         }
         let waits = Waits { paced: job.speed.is_paced(), rest: job.rest };
         let sides = outputs.iter_mut().map(|it| {
@@ -125,6 +125,7 @@ impl Control {
             let apart = it.answers.as_mut().map(Link::sender);
             let mut side = Side::new(&it.output, it.link.sender(), apart, waits);
             side.baud = baud;
+            side.aside = it.aside.as_mut().and_then(|aside| aside.as_mut().ok()).map(Link::sender);
             side
         });
         let sides = sides.collect();
@@ -184,6 +185,11 @@ impl Control {
 
     fn listen(&mut self) {
         for (i, output) in self.outputs.iter_mut().enumerate() {
+            if let Some(Ok(aside)) = &mut output.aside
+                && let Some(receiver) = aside.receiver()
+            {
+                self.ears.overhear(i, receiver, &self.talk, self.clock);
+            }
             let Some(receiver) = output.receiver() else { continue };
             match self.job.tap.take_if(|_| i == 0) {
                 Some(tap) => self.ears.tap(receiver, tap),

@@ -35,6 +35,17 @@ impl Ears {
         self.tasks.push(spawn_local(listen(link, receiver, talk.clone(), clock)));
     }
 
+    /// Listens where the other side of a link tells its attitude besides.
+    pub(super) fn overhear(
+        &mut self,
+        link: usize,
+        receiver: Receiver,
+        talk: &Rc<RefCell<Talk>>,
+        clock: WallClock,
+    ) {
+        self.tasks.push(spawn_local(overhear(link, receiver, talk.clone(), clock)));
+    }
+
     /// Listens to a ground station.
     pub(super) fn listen_to_ground(&mut self, receiver: Receiver, talk: &Rc<RefCell<Talk>>) {
         self.tasks.push(spawn_local(listen_to_ground(receiver, talk.clone())));
@@ -79,6 +90,18 @@ async fn listen_to_ground(mut receiver: Receiver, talk: Rc<RefCell<Talk>>) {
         match receiver.recv(&mut buffer).await {
             Ok(1..) => talk.borrow_mut().pass_down(&buffer),
             // A socket reports "port unreachable" here for an earlier datagram.
+            Ok(0) | Err(_) => tokio::time::sleep(super::shared::TICK).await,
+        }
+    }
+}
+
+/// Reads datagrams in which a controller tells its attitude. One that is not there yet may come.
+async fn overhear(link: usize, mut receiver: Receiver, talk: Rc<RefCell<Talk>>, clock: WallClock) {
+    let mut buffer = BytesMut::with_capacity(4096);
+    loop {
+        buffer.clear();
+        match receiver.recv(&mut buffer).await {
+            Ok(1..) => talk.borrow_mut().overhear(link, &buffer, clock.now()),
             Ok(0) | Err(_) => tokio::time::sleep(super::shared::TICK).await,
         }
     }

@@ -20,12 +20,14 @@ pub enum SessionError {
         source: LinkError,
     },
     /// Nobody connected.
-    #[error("nobody came to {link} in {}: open it from the other side, or wait longer with --wait TIME, or start at once with --wait 0", seconds(*waited))]
+    #[error("nobody came to {link} in {}: {hint}open it from the other side, or wait longer with --wait TIME, or start at once with --wait 0", seconds(*waited))]
     Nobody {
         /// What to connect to.
         link: String,
         /// How long the run waited.
         waited: Duration,
+        /// What a controller of this make needs, with a separator.
+        hint: String,
     },
     /// A controller never sent its opening messages.
     #[error("{link} was not heard in {}: {came}; wait longer with --wait TIME, or start at once with --wait 0", seconds(*waited))]

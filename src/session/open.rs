@@ -21,6 +21,8 @@ pub(super) struct OpenOutput {
     pub link: Link,
     /// Where the other side answers, if not there.
     pub answers: Option<Link>,
+    /// Where the other side tells its attitude besides, or why that is not heard.
+    pub aside: Option<Result<Link, String>>,
     /// Whether something may come back on it.
     pub speaks: bool,
     /// The highest fill of the link's buffers, bytes.
@@ -33,17 +35,28 @@ pub(super) struct OpenOutput {
 
 impl OpenOutput {
     /// Opens its link, and a connection to where the other side answers.
-    pub(super) async fn open(output: &Output) -> Result<OpenOutput, SessionError> {
+    /// `bridged` is whether a ground station takes the place where it may tell its attitude besides.
+    pub(super) async fn open(output: &Output, bridged: bool) -> Result<OpenOutput, SessionError> {
         let link = Link::open(&output.to.address).await?;
-        let answers = match &output.to.answers {
+        let answers = match output.to.apart() {
             Some(address) => Some(Link::open(address).await.map_err(|source| {
                 let whom = output.to.target.map_or(output.to.protocol.name(), |target| target.name);
                 SessionError::Answers { whom, source }
             })?),
             None => None,
         };
+        let aside = overhear(output, bridged).await;
         let (output, speaks) = (output.clone(), link.answers());
-        Ok(OpenOutput { output, link, answers, speaks, fullest: None, unplugged: false, abandoned: false })
+        Ok(OpenOutput {
+            output,
+            link,
+            answers,
+            aside,
+            speaks,
+            fullest: None,
+            unplugged: false,
+            abandoned: false,
+        })
     }
 
     /// What the other side says, wherever it does; once.
@@ -57,6 +70,9 @@ impl OpenOutput {
         if let Some(answers) = self.answers {
             answers.close().await;
         }
+        if let Some(Ok(aside)) = self.aside {
+            aside.close().await;
+        }
     }
 
     /// What to connect to.
@@ -67,6 +83,9 @@ impl OpenOutput {
     /// Reports that the link is open, and what the user should know about it.
     pub(super) fn introduce(&self, outside: &mut Outside<'_>) {
         self.link.notices().iter().for_each(|notice| outside.notice(notice.clone()));
+        if let Some(Err(why)) = &self.aside {
+            outside.notice(why.clone());
+        }
         outside.tell(Event::Ready(&self.output.to.at(self.name())));
     }
 
@@ -80,13 +99,15 @@ impl OpenOutput {
     ) -> Result<bool, SessionError> {
         let link = self.name().to_string();
         let whom = self.whom();
+        let hint = self.output.to.target.map_or("", |target| target.nobody);
+        let hint = if hint.is_empty() { String::new() } else { format!("{hint}; ") };
         let mut peer = pin!(timeout_at(deadline, self.link.peer()));
         let mut patience = pin!(sleep(PATIENCE));
         let mut told = false;
         loop {
             tokio::select! {
                 peer = &mut peer => {
-                    peer.map_err(|_| SessionError::Nobody { link, waited })??;
+                    peer.map_err(|_| SessionError::Nobody { link, waited, hint })??;
                     return Ok(true);
                 }
                 () = outside.ends() => return Ok(false),
@@ -159,4 +180,13 @@ impl OpenOutput {
             end => end.map(|kind| kind.to_string()),
         }
     }
+}
+
+/// Opens the place where a controller tells its attitude besides; `None` where there is none, or `bridged` to a ground
+/// station that takes it.
+async fn overhear(output: &Output, bridged: bool) -> Option<Result<Link, String>> {
+    let address = output.to.overheard().filter(|_| !bridged)?;
+    Some(Link::open(address).await.map_err(|error| {
+        format!("{error}: its attitude is not heard there, so it is not scored and its estimator is given some time before the scene")
+    }))
 }

@@ -18,6 +18,9 @@ const STEADY: f64 = 0.1;
 const STEADY_FOR: i64 = 10 * NANOS;
 /// How long after the rest a scene needs it has to settle, ns.
 const PATIENCE: i64 = 20 * NANOS;
+/// An estimator that is not heard has this long from its first answer on, ns: PX4 as a program was seen to need up to
+/// 25 s of wall time to boot.
+const UNHEARD: i64 = 25 * NANOS;
 /// Errors closer in time are merged, ns.
 const GRAIN: i64 = NANOS / 10;
 
@@ -27,6 +30,8 @@ pub(super) struct Settling {
     /// How long the vehicle rests at least, ns.
     rest: i64,
     first: Option<i64>,
+    /// When it first took a packet, ns, where that is told.
+    fed: Option<i64>,
     grains: VecDeque<Grain>,
     settled: bool,
 }
@@ -42,7 +47,7 @@ struct Grain {
 impl Settling {
     /// For a vehicle that rests at least this long.
     pub(super) fn new(rest: SimTime) -> Settling {
-        Settling { rest: rest.0, first: None, grains: VecDeque::new(), settled: false }
+        Settling { rest: rest.0, first: None, fed: None, grains: VecDeque::new(), settled: false }
     }
 
     /// Whether it has settled.
@@ -78,6 +83,23 @@ impl Settling {
         };
         self.settled = true;
         Some(how)
+    }
+
+    /// It took a packet at `now`, ns.
+    pub(super) fn feed(&mut self, now: i64) {
+        self.fed.get_or_insert(now);
+    }
+
+    /// Whether it is not waited for any longer, because nothing is heard of it. Returns a notice.
+    pub(super) fn give_up(&mut self, now: i64) -> Option<String> {
+        let waited = now - self.fed.filter(|_| self.first.is_none() && !self.settled)?;
+        (waited >= UNHEARD).then(|| {
+            self.settled = true;
+            format!(
+                "its attitude is not heard: the scene starts {} s after its first answer",
+                UNHEARD / NANOS
+            )
+        })
     }
 
     /// What is known of one that has not settled.
@@ -136,6 +158,12 @@ mod tests {
             how,
             "its attitude is still 50 deg off the rest after 40 s: the scene starts all the same"
         );
+        let mut unheard = Settling::new(SimTime(0));
+        assert_eq!(unheard.give_up(100 * NANOS), None, "it took nothing yet");
+        unheard.feed(3 * NANOS);
+        assert_eq!(unheard.give_up(27 * NANOS), None);
+        assert!(unheard.give_up(28 * NANOS).unwrap().contains("25 s after its first answer"));
+        assert!(unheard.is_settled() && unheard.give_up(29 * NANOS).is_none());
         let mut settling = Settling::new(SimTime(0));
         assert_eq!(settling.why_not(), None);
         settling.take(3.0, 0);

@@ -11,7 +11,8 @@ use crate::link::{Baud, Sender};
 use crate::report::AnswersReport;
 use crate::scene::{Output, Tells};
 use crate::score::Timed;
-use crate::time::SimTime;
+use crate::time::{NANOS, SimTime};
+use crate::wire::Protocol;
 use crate::wire::dialogue::{Dialogue, Peer, Stage};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -43,7 +44,7 @@ pub(super) struct Side {
     next_baud: Option<u32>,
     /// To whom it is told what is known of it, once that changes.
     news: Option<(Peer, News<Peer>)>,
-    protocol: &'static str,
+    protocol: Protocol,
     /// Whether a controller of its make answers while the scene is played.
     must_answer: bool,
     /// Whether it can know its heading.
@@ -51,6 +52,9 @@ pub(super) struct Side {
     lockstep: bool,
     /// Where the scene waits for its estimator.
     settling: Option<Settling>,
+    /// Where it tells its attitude besides, and when it was greeted there last, ns.
+    pub aside: Option<Sender>,
+    greeted: Option<i64>,
     /// The newest notice that its dialogue gave.
     notice: Option<String>,
     /// Whether a silence means anything.
@@ -69,6 +73,7 @@ impl Side {
     pub(super) fn new(output: &Output, sender: Sender, apart: Option<Sender>, waits: Waits) -> Side {
         let tells = output.to.target.map_or(Tells::Nothing, |target| target.tells);
         let Waits { paced, rest } = waits;
+        let overheard = output.to.overheard();
         let dialogue = || output.to.protocol.dialogue(output.wire.controller);
         Side {
             dialogue: output.to.is_spoken_with().then(dialogue).flatten(),
@@ -80,13 +85,17 @@ impl Side {
             must_answer: tells != Tells::Nothing,
             has_heading: output.to.target.is_none_or(|target| target.has_heading),
             lockstep: in_lockstep(output),
-            settling: rest.filter(|_| tells == Tells::Attitude).map(Settling::new),
+            settling: rest
+                .filter(|_| paced && tells == Tells::Attitude || overheard.is_some())
+                .map(Settling::new),
+            aside: None,
+            greeted: None,
             notice: None,
             timed: paced || in_lockstep(output),
             baud: None,
             next_baud: None,
             news: None,
-            protocol: output.to.protocol.name(),
+            protocol: output.to.protocol,
             way: Way::Link(sender, 0),
             apart: apart.map(|sender| Way::Link(sender, 0)),
             took: Arc::default(),
@@ -198,6 +207,29 @@ impl Side {
         self.settling.as_mut()?.take(off, now)
     }
 
+    /// Greets it where it tells its attitude besides, once a second: some say little to whom they do not hear.
+    pub(super) fn greet_aside(&mut self, now: i64) {
+        if self.greeted.is_some_and(|at| now - at < NANOS) {
+            return;
+        }
+        let seq = self.greeted.map_or(0, |at| (at / NANOS) as u8);
+        self.greeted = Some(now);
+        if let Some(aside) = &mut self.aside {
+            // If it is lost, the next one follows.
+            let _ = aside.send(&self.protocol.greeting(seq));
+        }
+    }
+
+    /// It took a packet at `now`, ns.
+    pub(super) fn fed(&mut self, now: i64) {
+        self.settling.iter_mut().for_each(|settling| settling.feed(now));
+    }
+
+    /// Gives up on an estimator that is not heard. Returns a notice.
+    pub(super) fn settle_unheard(&mut self, now: i64) -> Option<String> {
+        self.settling.as_mut()?.give_up(now)
+    }
+
     /// Keeps a notice of its dialogue: it may be why it never becomes ready.
     pub(super) fn keep(&mut self, notice: &str) {
         self.notice = Some(notice.into());
@@ -227,7 +259,8 @@ impl Side {
 
     /// A summary of what arrived, for the message after a timeout.
     pub(super) fn what_came(&self) -> String {
-        let Side { protocol, bytes, messages, .. } = self;
+        let Side { bytes, messages, .. } = self;
+        let protocol = self.protocol.name();
         match (bytes, messages) {
             (0, _) => {
                 "nothing came from it (is it switched on, wired TX to RX, and at this end of the link?)"

@@ -46,12 +46,21 @@ impl Talk {
         });
     }
 
+    /// Processes what the other side of a link told elsewhere at `now`, ns on the run's clock.
+    pub(super) fn overhear(&mut self, link: usize, bytes: &[u8], now: i64) {
+        self.converse(link, |dialogue, talk| {
+            dialogue.overhear(bytes, now, &mut |said| talk.said(link, said, now));
+        });
+        self.sides[link].greet_aside(now);
+    }
+
     /// Sends what is due without a request.
     pub(super) fn tick(&mut self, now: i64) {
         for link in 0..self.sides.len() {
             self.converse(link, |dialogue, talk| dialogue.tick(now, &mut |said| talk.said(link, said, now)));
             let side = &mut self.sides[link];
-            self.notices.extend(side.look(now).map(|notice| format!("{}: {notice}", side.to)));
+            let notices = [side.look(now), side.settle_unheard(now)];
+            self.notices.extend(notices.into_iter().flatten().map(|notice| format!("{}: {notice}", side.to)));
         }
     }
 
@@ -96,6 +105,7 @@ impl Talk {
             Said::Ahead(bytes) => side.send_ahead(bytes),
             Said::Took => {
                 side.took();
+                side.fed(now);
                 if let Some(pacing) = &self.pacing {
                     pacing.unpark();
                 }

@@ -32,7 +32,7 @@ pub(super) static ROW: Row = Row {
     reader: |_| Box::new(reader::Reader::default()),
     dialogue: |controller| Some(Box::new(dialogue::Sitl::new(controller))),
     shared: |_, first| Some(Shared::at_ticks("a packet", CARRIED, first)),
-    keys: &["version", "answers", "thin"],
+    keys: &["version", "thin"],
     check: any,
     greeting: |_| vec![0],
     is_numbered: false,

@@ -83,6 +83,9 @@ pub trait Dialogue: Send {
     /// Processes bytes as they arrive, in pieces of any size.
     fn hear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>));
 
+    /// Processes bytes that it told elsewhere: whole messages.
+    fn overhear(&mut self, _bytes: &[u8], _now: i64, _say: &mut dyn FnMut(Said<'_>)) {}
+
     /// Sends what is due without a request: a question, a retransmission, a notice that nobody answers. Call it
     /// about every ten milliseconds.
     fn tick(&mut self, _now: i64, _say: &mut dyn FnMut(Said<'_>)) {}

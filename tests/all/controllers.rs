@@ -40,6 +40,17 @@ impl Run {
         Run { folder, child }
     }
 
+    /// Of a scene with outputs of its own.
+    fn of(scene: &str, more: &[&str]) -> Run {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, scene).unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ratetable"));
+        command.arg("run").arg(&path).arg("--json").args(more);
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+        Run { folder, child: child.expect("the program starts") }
+    }
+
     fn port(&self) -> PathBuf {
         self.folder.path().join("port")
     }
@@ -107,8 +118,11 @@ fn beat() -> Vec<u8> {
 fn px4_in_lockstep_gets_each_packet_after_its_answer_to_the_one_before() {
     // Any free port: the program says which it was given.
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let aside = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let ground = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     for speed in ["max", "4"] {
-        let run = Run::start(&format!("px4-sitl@tcpin:{port}"), &["--speed", speed]);
+        let output = format!("[[output]]\nto = \"px4-sitl@tcpin:{port}\"\nanswers = \"udpin:{ground}\"\n");
+        let run = Run::of(&format!("{SCENE}{output}"), &["--speed", speed]);
         let mut stream = loop {
             match TcpStream::connect(("127.0.0.1", port)) {
                 Ok(stream) => break stream,
@@ -132,6 +146,15 @@ fn px4_in_lockstep_gets_each_packet_after_its_answer_to_the_one_before() {
                 }
             });
             sensed += now;
+            // Its estimator boots longer than it answers; then it tells that it is level and faces north.
+            if sensed > 400 {
+                let told = attitude_quaternion::Repr {
+                    time_boot_ms: (last / 1000) as u32,
+                    q: [1.0, 0.0, 0.0, 0.0],
+                    ..Default::default()
+                };
+                aside.send_to(&packet(&Message::AttitudeQuaternion(told)), ground).unwrap();
+            }
             // The first twenty go unanswered; a while after the first answer there is only ever one on its way.
             together = together.max(if sensed > 120 { now } else { 0 });
             for _ in 0..if sensed > 20 { now } else { 0 } {
@@ -146,6 +169,11 @@ fn px4_in_lockstep_gets_each_packet_after_its_answer_to_the_one_before() {
         assert_eq!(report["sensors"][0]["sent"].as_u64(), Some(sensed));
         let rest = report["rest_s"].as_f64().unwrap();
         assert!(rest >= 1.0 && rest.fract() == 0.0, "{rest}");
+        assert!(sensed > 400, "it is held at rest until its attitude is heard");
+        let attitude = &report["attitude"];
+        assert!(attitude["samples"].as_u64().unwrap() > 100, "{attitude}");
+        assert!((attitude["max_deg"].as_f64().unwrap() - 90.0).abs() < 4.0, "{attitude}");
+        assert_eq!(report["links"][0]["answers"]["expected"], 150, "{report}");
         assert_eq!(sensed, 150 + (rest * 100.0) as u64, "the rest is in the counts");
         assert_eq!(report["duration_s"], 1.5, "and not in the duration");
     }
@@ -623,13 +651,7 @@ impl Sitl {
         let [samples, words] = [self.samples.local_addr(), self.words.local_addr()].map(Result::unwrap);
         let output =
             format!("[[output]]\nto = \"betaflight@udpout:{samples}\"\nanswers = \"tcpout:{words}\"\n");
-        let folder = tempfile::tempdir().unwrap();
-        let scene = folder.path().join("scene.toml");
-        std::fs::write(&scene, format!("{SCENE}{output}")).unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_ratetable"));
-        command.arg("run").arg(&scene).arg("--json").args(more);
-        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-        Run { folder, child: child.expect("the program starts") }
+        Run::of(&format!("{SCENE}{output}"), more)
     }
 
     /// Answers until its client has left; level and north all the time. `also` sees what has come so far.

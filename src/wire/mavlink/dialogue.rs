@@ -37,6 +37,8 @@ const SET_BACK: i32 = 1000;
 /// The conversation on one link.
 pub(super) struct Mavlink {
     decoder: Decoder,
+    /// Of what it tells elsewhere.
+    aside: Decoder,
     ear: Ear,
     pause: Pause,
 }
@@ -81,6 +83,7 @@ impl Mavlink {
         };
         Mavlink {
             decoder: Decoder::new(),
+            aside: Decoder::new(),
             pause: Pause::default(),
             ear: Ear {
                 voice: Voice::default(),
@@ -111,6 +114,11 @@ impl Dialogue for Mavlink {
         self.pause.heard(now);
         let Mavlink { decoder, ear, .. } = self;
         decoder.feed_whole(bytes, |received| ear.take(received, now, say));
+    }
+
+    fn overhear(&mut self, bytes: &[u8], now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        let Mavlink { aside, ear, .. } = self;
+        aside.feed_whole(bytes, |received| ear.overhear(received.map(|(received, _)| received), now, say));
     }
 
     fn tick(&mut self, now: i64, say: &mut dyn FnMut(Said<'_>)) {
@@ -166,19 +174,7 @@ impl Ear {
             Message::Timesync(timesync::Repr { tc1: 0, ts1 }) => {
                 self.voice.say(&Message::Timesync(timesync::Repr { tc1: now, ts1 }), say);
             }
-            Message::AttitudeQuaternion(attitude_quaternion::Repr { time_boot_ms, q, .. }) => {
-                self.asking.hear(attitude_quaternion::ID, now);
-                self.quaternion_at = Some(now);
-                let [w, x, y, z] = q.map(f64::from);
-                self.estimate(time_boot_ms, DQuat::from_xyzw(x, y, z, w), now, say);
-            }
-            Message::Attitude(attitude::Repr { time_boot_ms, roll, pitch, yaw, .. }) => {
-                self.asking.hear(attitude::ID, now);
-                if self.quaternion_at.is_none_or(|at| now - at > QUATERNION_GONE) {
-                    let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::from);
-                    self.estimate(time_boot_ms, Euler { roll, pitch, yaw }.to_quat(), now, say);
-                }
-            }
+            Message::AttitudeQuaternion(_) | Message::Attitude(_) => self.attitude(&message, now, say),
             Message::HilActuatorControls(controls) => {
                 if controls.flags & hil_actuator_controls::LOCKSTEP != 0 {
                     say(Said::Took);
@@ -198,6 +194,34 @@ impl Ear {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Its attitude, as quaternion or as Euler angles.
+    fn attitude(&mut self, message: &Message, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        match *message {
+            Message::AttitudeQuaternion(attitude_quaternion::Repr { time_boot_ms, q, .. }) => {
+                self.asking.hear(attitude_quaternion::ID, now);
+                self.quaternion_at = Some(now);
+                let [w, x, y, z] = q.map(f64::from);
+                self.estimate(time_boot_ms, DQuat::from_xyzw(x, y, z, w), now, say);
+            }
+            Message::Attitude(attitude::Repr { time_boot_ms, roll, pitch, yaw, .. }) => {
+                self.asking.hear(attitude::ID, now);
+                if self.quaternion_at.is_none_or(|at| now - at > QUATERNION_GONE) {
+                    let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::from);
+                    self.estimate(time_boot_ms, Euler { roll, pitch, yaw }.to_quat(), now, say);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Reads what it tells elsewhere, where other programs may speak too: its attitude alone.
+    fn overhear(&mut self, received: Result<Received, Error>, now: i64, say: &mut dyn FnMut(Said<'_>)) {
+        let Ok(Received { header, message: Some(message), .. }) = received else { return };
+        if self.autopilot.is_none_or(|autopilot| autopilot.system == header.system) {
+            self.attitude(&message, now, say);
         }
     }
 

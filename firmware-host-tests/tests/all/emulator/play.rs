@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use ratetable::player::Player;
-use ratetable::scene::{Output, Plan};
+use ratetable::scene::{Destination, Output, Plan};
 use ratetable::sensor::Reading;
 use ratetable::session::{self, Event, Job, Outcome, Speed};
 use ratetable::time::SimTime;
@@ -41,7 +41,12 @@ pub fn play_after<T: Send + 'static>(
     other_side: impl FnOnce(&str) -> T + Send + 'static,
     mut on: impl FnMut(&Event<'_>),
 ) -> (Outcome, T) {
-    let outputs = vec![Output::to(to.parse().expect("a destination"))];
+    let mut to: Destination = to.parse().expect("a destination");
+    if to.overheard().is_some() {
+        // No stand-in tells its attitude beside its link.
+        to.answers = None;
+    }
+    let outputs = vec![Output::to(to)];
     let job = Job { rest, speed, wait: Duration::from_secs(30), ..Job::new(plan.clone(), outputs) };
     let (mut waiting, mut running) = (Some(other_side), None);
     let outcome = session::run(job, &mut |event| {
