@@ -159,11 +159,14 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
     let asked = ["version", "messages"].map(|key| (key, section.has(key)));
-    if !section.has("to") {
-        section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
-    }
-    let to = section.text("to", None)?;
-    let mut to: Destination = to.parse().map_err(|error: String| section.mistake("to", error)).ok()?;
+    let Some(mut to) = destination(section) else {
+        // What else is wrong is told all the same.
+        mavlink(section);
+        if section.has("answers") {
+            section.text("answers", None);
+        }
+        return None;
+    };
     let mut controller = to.target.map(|target| target.controller);
     let (version, extras) = match to.protocol {
         Protocol::Betaflight => Default::default(),
@@ -191,7 +194,16 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     Some(Output { to, wire, overload, force, faults: Vec::new() })
 }
 
-/// `version` and `messages`, which only `mavlink` has.
+/// Where to.
+fn destination(section: &Section<'_>) -> Option<Destination> {
+    if !section.has("to") {
+        section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
+    }
+    let to = section.text("to", None)?;
+    to.parse().map_err(|error: String| section.mistake("to", error)).ok()
+}
+
+/// `version` and `messages` of `mavlink`.
 fn mavlink(section: &Section<'_>) -> (Version, Extras) {
     let version = match section.has("version").then(|| section.whole("version", 2)) {
         Some(1) => Version::V1,
