@@ -182,21 +182,21 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let force = section.flag("force").unwrap_or(false);
     let pace = section.flag("pace");
     let (claim, mag) = unit(section);
-    if !section.has("to") {
-        section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
-    }
-    let to = section
-        .text("to", None)
-        .and_then(|to| to.parse::<Destination>().map_err(|error: String| section.mistake("to", error)).ok());
+    let word = |key, names: &[&'static str]| section.has(key).then(|| section.word(key, names, names[0]));
+    let thin = word("thin", &Thin::NAMES).map(Thin::from_name);
+    let at_end = word("at_end", &AtEnd::NAMES).map_or(AtEnd::default(), AtEnd::from_name);
+    let to = destination(section);
     // `version` is a number in MAVLink and a release of Betaflight.
     let is_betaflight = to.as_ref().is_some_and(|to| to.protocol == Protocol::Betaflight);
     let (version, extras) = if is_betaflight { Default::default() } else { mavlink(section) };
-    let mut to = to?;
+    let Some(mut to) = to else {
+        // What else is wrong is told all the same.
+        if section.has("answers") {
+            section.text("answers", None);
+        }
+        return None;
+    };
     let mut controller = to.target.map(|target| target.controller);
-    let thin =
-        section.has("thin").then(|| Thin::from_name(section.word("thin", &Thin::NAMES, Thin::NAMES[1])));
-    let at_end = section.has("at_end").then(|| section.word("at_end", &AtEnd::NAMES, AtEnd::NAMES[0]));
-    let at_end = at_end.map_or(AtEnd::default(), AtEnd::from_name);
     if let Some(Controller::Betaflight(release)) = &mut controller {
         *release = betaflight(section);
     }
@@ -222,7 +222,16 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     Some(Output { to, wire, overload, force, faults: Vec::new() })
 }
 
-/// `version` and `messages`, which only `mavlink` has.
+/// Where to.
+fn destination(section: &Section<'_>) -> Option<Destination> {
+    if !section.has("to") {
+        section.lacks("an output needs a destination, such as to = \"mpu@pty\"".into());
+    }
+    let to = section.text("to", None)?;
+    to.parse().map_err(|error: String| section.mistake("to", error)).ok()
+}
+
+/// `version` and `messages` of `mavlink`.
 fn mavlink(section: &Section<'_>) -> (Version, Extras) {
     let version = match section.has("version").then(|| section.whole("version", 2)) {
         Some(1) => Version::V1,

@@ -33,6 +33,7 @@ const BOUND_DEG: f64 = 1.1 * 0.1966;
 const INCLINATION_DEG: f64 = 1.1 * 0.07516;
 
 type Stream = Vec<(u64, Vec<u8>)>;
+type Wrong = fn(&mut state::Repr);
 
 fn talk(plan: &Plan, build: Build, release: Release, alter: impl FnOnce(Stream, u64) -> Stream) -> Told {
     let settings = Settings { build, ..Settings::default() };
@@ -101,7 +102,7 @@ fn a_false_attitude_in_the_packets_changes_no_estimate() {
 #[test]
 fn wrong_readings_do_not_pass() {
     let plan = short("duration=30 s");
-    let wrong: [(&str, fn(&mut state::Repr)); 5] = [
+    let wrong: [(&str, Wrong); 5] = [
         ("the other sign about the vertical", |state| state.gyro[2] = -state.gyro[2]),
         ("accel x the other way round", |state| state.accel[0] = -state.accel[0]),
         ("accel y the other way round", |state| state.accel[1] = -state.accel[1]),
