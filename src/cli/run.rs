@@ -6,7 +6,7 @@ use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::link::Address;
 use crate::report::Limit;
-use crate::scene::{Destination, Output, OutputFault, Plan, Target};
+use crate::scene::{Destination, Output, OutputFault, Plan, Target, Tells};
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
 use crate::time::SimTime;
 use crate::wire::{self, Protocol};
@@ -84,6 +84,13 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     }
     outcome.judge(&mut report, &limits, target.is_some())?;
     tell(&summary::run(&report, &outcome));
+    let told = outcome.attitude.is_some();
+    if let Some(target) = target.filter(|target| target.tells == Tells::Nothing && !told) {
+        tell(&format!(
+            "{} does not tell its attitude on this link: while a scene plays, record it from its telemetry with `ratetable listen mavlink@PORT --attitude --record DIR`, then `ratetable score TRUTH DIR`",
+            target.name
+        ));
+    }
     if let Some(dir) = &arguments.out {
         super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
     }

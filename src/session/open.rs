@@ -15,6 +15,9 @@ use tokio::time::{Instant, sleep, timeout_at};
 /// itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 
+/// A reader that is gone for this long is told of.
+const GONE: Duration = Duration::from_secs(1);
+
 /// The control side's half of an output: its link, observed without delaying the pacing thread.
 pub(super) struct OpenOutput {
     pub output: Output,
@@ -27,6 +30,9 @@ pub(super) struct OpenOutput {
     pub speaks: bool,
     /// The highest fill of the link's buffers, bytes.
     fullest: Option<usize>,
+    /// Since when its reader is gone, and whether the user knows.
+    gone: Option<Instant>,
+    told_gone: bool,
     /// The port was unplugged.
     unplugged: bool,
     /// Its reader has left for good.
@@ -54,6 +60,8 @@ impl OpenOutput {
             aside,
             speaks,
             fullest: None,
+            gone: None,
+            told_gone: false,
             unplugged: false,
             abandoned: false,
         })
@@ -141,6 +149,22 @@ impl OpenOutput {
             _ => {}
         }
         self.unplugged = is_unplugged;
+        self.look_for_reader(outside);
+    }
+
+    /// Notices a reader that leaves for longer than a moment, and one that comes back.
+    fn look_for_reader(&mut self, outside: &mut Outside<'_>) {
+        if !self.link.peer_has_left() {
+            self.gone = None;
+            if std::mem::take(&mut self.told_gone) {
+                outside.notice(format!("{} has a reader again", self.name()));
+            }
+            return;
+        }
+        let gone = *self.gone.get_or_insert_with(Instant::now);
+        if gone.elapsed() >= GONE && !std::mem::replace(&mut self.told_gone, true) {
+            outside.notice(format!("{}: its reader is gone; what is sent meanwhile is lost", self.name()));
+        }
     }
 
     /// The link's report, from the output's account and its conversation.

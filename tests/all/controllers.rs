@@ -794,3 +794,38 @@ fn betaflight_that_does_not_run_or_does_not_sense_is_told_of() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("betaflight answers there: start it first"), "{said}");
 }
+
+#[test]
+fn the_last_packets_show_where_the_vehicle_was_when_it_was_stopped_and_leave_inavs_simulator() {
+    // The producer is seconds ahead of what is sent, in which this scene rolls by more than a turn.
+    let scene = "[[motion]]\nkind = \"rotate\"\nroll = \"90 deg/s\"\nduration = \"60 s\"\n[gyro]\nrate = \"100 Hz\"\n[accel]\nrate = \"100 Hz\"\n";
+    let folder = tempfile::tempdir().unwrap();
+    let port = folder.path().join("port");
+    for at_end in ["leave", "hold"] {
+        let output = format!("[[output]]\nto = \"msp@pty:{}\"\nat_end = \"{at_end}\"\n", port.display());
+        let run = Run::of(&format!("{scene}{output}"), &[]);
+        let mut file = open(&port);
+        let (mut decoder, mut seen, mut stopped) = (msp::Decoder::new(), Vec::new(), false);
+        while let Some(bytes) = next(&mut file) {
+            decoder.feed(&bytes, |received| {
+                if let Some(msp::Message::Simulator(simulator)) = received.unwrap().message {
+                    seen.push(simulator);
+                }
+            });
+            if seen.len() > 150 && !std::mem::replace(&mut stopped, true) {
+                let pid = rustix::process::Pid::from_child(&run.child);
+                rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+            }
+        }
+        let report = run.report();
+        let leaves = at_end == "leave";
+        assert_eq!(seen.last().unwrap().flags == 0, leaves, "{report}");
+        let rest = if leaves { &seen[..seen.len() - 1] } else { &seen[..] };
+        let [before, last] = [rest[rest.len() - 2], rest[rest.len() - 1]];
+        assert_eq!(last.gyro, [0; 3]);
+        let roll = |accel: [i16; 3]| f64::from(accel[1]).atan2(f64::from(accel[2])).to_degrees();
+        let off = (roll(last.accel) - roll(before.accel) + 540.0).rem_euclid(360.0) - 180.0;
+        // A packet or two at 90 deg/s.
+        assert!(off.abs() < 3.0, "{at_end}: {off} deg from the packet before");
+    }
+}
