@@ -24,12 +24,12 @@ pub enum Protocol {
     Vectornav,
     /// MicroStrain inertial packets, for ArduPilot.
     Mip,
-    /// The state that Betaflight's SITL takes from a simulator.
-    Betaflight,
     /// User-defined data of an Inertial Labs unit, for ArduPilot and PX4.
     Ilabs,
     /// sbgECom packets of an SBG Systems unit, for ArduPilot.
     Sbg,
+    /// The state that Betaflight's SITL takes from a simulator.
+    Betaflight,
     /// A line of comma-separated values for each reading.
     Csv,
     /// A JSON object for each reading.
