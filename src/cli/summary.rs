@@ -1,7 +1,7 @@
 //! The report of a run as a person reads it.
 
 use crate::cli::terminal::Stream;
-use crate::report::{AnswersReport, AttitudeReport, HeardReport, Report, number};
+use crate::report::{AnswersReport, AttitudeReport, HeardReport, LinkReport, Report, number};
 use crate::score::DelayKnown;
 use crate::session::Outcome;
 use crate::time::SimTime;
@@ -34,7 +34,24 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             number(report.stretched_s)
         );
     }
-    for (link, gaps) in report.links.iter().filter_map(|link| Some((link, link.gaps?))) {
+    report.links.iter().for_each(|link| text += &happened(link));
+    if let Some(attitude) = &report.attitude {
+        text += &known(attitude, report.duration_s);
+    }
+    report.links.iter().for_each(|link| text += &harmed(link));
+    for fault in &report.faults {
+        text += &format!("fault: {fault}\n");
+    }
+    for failure in &report.failed {
+        text += &format!("FAILED: {failure}\n");
+    }
+    text
+}
+
+/// What happened on a link besides the packets.
+fn happened(link: &LinkReport) -> String {
+    let mut text = String::new();
+    if let Some(gaps) = link.gaps {
         text += &format!(
             "{} was unplugged {}, {} s in all: {} packets with {} samples dropped\n",
             link.name,
@@ -44,12 +61,10 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             gaps.samples
         );
     }
-    for (link, answers) in report.links.iter().filter_map(|link| Some((link, link.answers.as_ref()?))) {
+    if let Some(answers) = &link.answers {
         text += &answered(&link.name, answers);
     }
-    for (link, asked) in
-        report.links.iter().flat_map(|link| link.asked.iter().map(move |asked| (link, asked)))
-    {
+    for asked in &link.asked {
         text += &format!(
             "the controller on {} asked for {} Hz: sent so from {} s of the stream on\n",
             link.name,
@@ -57,20 +72,16 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             number(asked.at_s)
         );
     }
-    if let Some(attitude) = &report.attitude {
-        text += &known(attitude, report.duration_s);
-    }
-    for link in report.links.iter().filter(|link| !link.faults.is_empty()) {
-        let counts: Vec<_> = link.faults.iter().map(|(kind, packets)| format!("{kind} {packets}")).collect();
-        text += &format!("packets that faults acted on, {}: {}\n", link.name, counts.join(", "));
-    }
-    for fault in &report.faults {
-        text += &format!("fault: {fault}\n");
-    }
-    for failure in &report.failed {
-        text += &format!("FAILED: {failure}\n");
-    }
     text
+}
+
+/// The packets of a link that faults acted on.
+fn harmed(link: &LinkReport) -> String {
+    if link.faults.is_empty() {
+        return String::new();
+    }
+    let counts: Vec<_> = link.faults.iter().map(|(kind, packets)| format!("{kind} {packets}")).collect();
+    format!("packets that faults acted on, {}: {}\n", link.name, counts.join(", "))
 }
 
 /// What came back on a link.
