@@ -81,6 +81,7 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
     };
     let heard = hear(&job, span.unwrap_or(SimTime::FOREVER))?;
     let mut report = report(&arguments.from, &heard, baud);
+    report.links[0].attitudes = arguments.attitude.then_some(heard.told.len() as u64);
     report.judge(&arguments.limit)?;
     tell(&summary::heard(&report, heard.interrupted));
     if let Some(dir) = &arguments.out {
@@ -143,7 +144,8 @@ fn record(dir: &Path, force: bool, heard: &Heard, report: &HeardReport) -> Resul
 pub(super) fn shape(from: &Destination) -> HeardReport {
     let more = |kind: SensorKind| (2..=4).map(move |n| format!("{kind}-{n}"));
     let names = SensorKind::ALL.into_iter().flat_map(|kind| [kind.to_string()].into_iter().chain(more(kind)));
-    let link = HeardLink { to: from.to_string(), stamp_steps: Some(0), ..HeardLink::default() };
+    let link =
+        HeardLink { to: from.to_string(), stamp_steps: Some(0), attitudes: Some(0), ..HeardLink::default() };
     HeardReport::new(Host::new(parallel::all_cores()), names.map(HeardSensor::shape).collect(), link)
 }
 

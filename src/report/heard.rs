@@ -44,7 +44,9 @@ impl HeardReport {
             some.map(move |(name, count)| format!("links.{i}.{name} = {count} > 0"))
         });
         let mut failed: Vec<_> = lost.collect();
-        if self.sensors.is_empty() {
+        if self.sensors.is_empty()
+            && !self.links.iter().any(|link| link.attitudes.is_some_and(|count| count > 0))
+        {
             failed.push("no packet carried a sample of gyro, accel or mag".into());
         }
         failed.extend(limits.iter().filter_map(|limit| limit.broken(&value)));
@@ -139,6 +141,9 @@ pub struct HeardLink {
     pub unchecked: u64,
     /// How often the stamps of a `.tlog` went back, or forward by more than an hour; absent elsewhere.
     pub stamp_steps: Option<u64>,
+    /// Attitudes that the controller told, where it was asked for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attitudes: Option<u64>,
     /// Packets without a sample, by name.
     pub foreign: BTreeMap<String, u64>,
 }

@@ -727,7 +727,7 @@ fn betaflight_is_spoken_with_beside_the_stream_and_left_at_rest_after_an_interru
         ]);
         let mut stopped = false;
         let fed = sitl.serve(true, |fed| {
-            if interrupted && fed.states.len() > 260 && !std::mem::replace(&mut stopped, true) {
+            if interrupted && fed.states.len() > 500 && !std::mem::replace(&mut stopped, true) {
                 interrupt(&run);
             }
         });
