@@ -133,6 +133,7 @@ impl Meter {
         };
         let bytes_per_s = self.duration_s().filter(|span| *span > 0.0).map(|span| after as f64 / span);
         HeardLink {
+            attitudes: None,
             to,
             name,
             packets: counts.packets,
