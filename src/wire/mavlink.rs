@@ -157,10 +157,14 @@ impl Mavlink {
         }
     }
 
+    fn header(&mut self) -> Header {
+        let seq = self.seq;
+        self.seq = seq.wrapping_add(1);
+        Header { version: self.version, seq, system: self.system, component: COMPONENT }
+    }
+
     fn bytes<'b>(&mut self, message: &Message, buffer: &'b mut [u8; mavlink::MAX_LEN]) -> &'b [u8] {
-        let header =
-            Header { version: self.version, seq: self.seq, system: self.system, component: COMPONENT };
-        self.seq = self.seq.wrapping_add(1);
+        let header = self.header();
         // MAX_LEN holds every message.
         let len = mavlink::encode(&header, message, buffer).unwrap_or(0);
         &buffer[..len]
@@ -264,10 +268,10 @@ impl Encoder for Mavlink {
         }
         self.newest.take_in(readings);
         if readings.iter().any(|reading| Some(reading.kind) == self.carrier) && self.is_turn() {
-            let message = self.hil_sensor(t);
-            let mut buffer = [0; mavlink::MAX_LEN];
-            let bytes = self.bytes(&message, &mut buffer);
-            out.push(self.newest.packet(t, KINDS, bytes));
+            let (message, header) = (self.hil_sensor(t), self.header());
+            // A packet holds every message.
+            let write = |bytes: &mut [u8]| mavlink::encode(&header, &message, bytes).unwrap_or(0);
+            out.push(self.newest.fill(t, KINDS, write));
         }
         let fix = readings.iter().find_map(|reading| Some(reading.position()?.fix));
         if let (Some(fix), Some(claims)) = (fix, &self.claims) {

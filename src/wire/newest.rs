@@ -1,62 +1,77 @@
 //! The newest sample of each sensor, for packets that carry several.
 
-use super::samples::Sensed;
 use super::{Options, Packet};
 use crate::geometry::{Body, Vector};
 use crate::sensor::{ByKind, Kinds, Measurement, REFERENCE_TEMPERATURE, Reading, SensorKind};
 use crate::time::SimTime;
 
-/// The last value of each sensor. It keeps only this part of a reading, because a reading has six times the bytes.
+/// The last value of each sensor: a part of its reading, which has six times the bytes. Three components and the
+/// temperature of the sensor, °C, lie side by side, so that a packet reads them as they were written.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Told(ByKind<Option<(Sensed, f64)>>);
+pub(super) struct Told {
+    values: ByKind<[f64; 4]>,
+    has: Kinds,
+}
 
 impl Told {
     /// Whether a sensor of this kind has a value; never for a receiver, whose fix is not kept.
     pub fn has(&self, kind: SensorKind) -> bool {
-        self.0[kind as usize].is_some()
+        self.has.contains(kind)
     }
 
     /// Its value in body axes.
     pub fn body(&self, kind: SensorKind) -> Option<Vector<Body>> {
-        self.0[kind as usize]?.0.body()
+        let [x, y, z, _] = self.values[kind as usize];
+        self.has(kind).then(|| Vector::new(x, y, z))
     }
 
     /// Its pressure, Pa.
     pub fn pressure(&self, kind: SensorKind) -> Option<f64> {
-        self.0[kind as usize]?.0.pressure()
+        self.has(kind).then(|| self.values[kind as usize][0])
     }
 
     /// Temperature of the sensor, °C.
     pub fn temperature(&self, kind: SensorKind) -> Option<f64> {
-        Some(self.0[kind as usize]?.1)
+        self.has(kind).then(|| self.values[kind as usize][3])
     }
 
     /// Replaces the value of a sensor, or removes it.
     pub fn put(&mut self, kind: SensorKind, body: Option<Vector<Body>>) {
-        self.0[kind as usize] = body.map(|body| (Sensed::Body(body), REFERENCE_TEMPERATURE));
+        match body {
+            Some(body) => self.say(kind, body.v.to_array(), REFERENCE_TEMPERATURE),
+            None => self.has.remove(kind.into()),
+        }
+    }
+
+    #[inline]
+    fn say(&mut self, kind: SensorKind, [x, y, z]: [f64; 3], temperature: f64) {
+        self.values[kind as usize] = [x, y, z, temperature];
+        self.has.insert(kind);
     }
 
     /// Makes a reading the `n`th of a mean.
     fn merge(&mut self, reading: &Reading, n: u32) {
+        let Some(value) = value(reading) else { return };
         let share = 1.0 / f64::from(n);
-        match (&mut self.0[reading.kind as usize], &reading.measurement) {
-            (Some((Sensed::Body(mean), _)), Measurement::Triad(triad)) => {
-                mean.v += (triad.value.v - mean.v) * share;
-            }
-            (Some((Sensed::Pressure(mean), _)), Measurement::Pressure(pressure)) => {
-                *mean += (pressure.value - *mean) * share;
-            }
-            _ => self.take_in(reading),
-        }
+        let mean = &mut self.values[reading.kind as usize];
+        mean.iter_mut().zip(value).for_each(|(mean, value)| *mean += (value - *mean) * share);
     }
 
+    #[inline]
     fn take_in(&mut self, reading: &Reading) {
-        let said = match &reading.measurement {
-            Measurement::Triad(triad) => Sensed::Body(triad.value),
-            Measurement::Pressure(pressure) => Sensed::Pressure(pressure.value),
-            Measurement::Position(_) => return,
-        };
-        self.0[reading.kind as usize] = Some((said, reading.temperature));
+        if let Some(value) = value(reading) {
+            self.say(reading.kind, value, reading.temperature);
+        }
+    }
+}
+
+/// The components of a reading; `None` for a fix. A pressure is the first.
+#[inline]
+fn value(reading: &Reading) -> Option<[f64; 3]> {
+    match &reading.measurement {
+        Measurement::Triad(triad) => Some(triad.value.v.to_array()),
+        Measurement::Pressure(pressure) => Some([pressure.value, 0.0, 0.0]),
+        Measurement::Position(_) => None,
     }
 }
 
@@ -100,9 +115,23 @@ impl Newest {
             .map(|kind| u64::from(self.fresh.contains(kind)) + u64::from(self.replaced[kind as usize]))
     }
 
-    /// A packet of these bytes; it carries the fresh samples among `kinds`.
+    /// A packet of these bytes with the fresh samples among `kinds`.
     pub fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
         let mut packet = Packet::new(due, self.fresh & kinds, bytes);
+        self.hand_over(kinds, &mut packet);
+        packet
+    }
+
+    /// The same of bytes that are written where they belong; `write` returns how many there are.
+    pub fn fill(&mut self, due: SimTime, kinds: Kinds, write: impl FnOnce(&mut [u8]) -> usize) -> Packet {
+        let mut packet = Packet::fill(due, self.fresh & kinds, write);
+        self.hand_over(kinds, &mut packet);
+        packet
+    }
+
+    /// The packet takes over what these sensors have waiting.
+    #[inline]
+    fn hand_over(&mut self, kinds: Kinds, packet: &mut Packet) {
         let thinned = self.thinned & kinds;
         if !thinned.is_empty() {
             for kind in thinned.iter() {
@@ -112,6 +141,5 @@ impl Newest {
             packet.merges = self.means;
         }
         self.fresh.remove(kinds);
-        packet
     }
 }

@@ -28,6 +28,7 @@ pub struct Packet {
 impl Packet {
     /// A packet of these bytes, due at `due`. Truncates bytes beyond [`MAX_PACKET`], which no protocol here
     /// reaches.
+    #[inline]
     pub fn new(due: SimTime, carries: Kinds, bytes: &[u8]) -> Packet {
         debug_assert!(bytes.len() <= MAX_PACKET, "{} bytes", bytes.len());
         let len = bytes.len().min(MAX_PACKET);
@@ -41,6 +42,14 @@ impl Packet {
             bytes: [0; MAX_PACKET],
         };
         packet.bytes[..len].copy_from_slice(&bytes[..len]);
+        packet
+    }
+
+    /// A packet whose bytes are written where they belong; `write` returns how many there are.
+    #[inline]
+    pub(super) fn fill(due: SimTime, carries: Kinds, write: impl FnOnce(&mut [u8]) -> usize) -> Packet {
+        let mut packet = Packet::new(due, carries, &[]);
+        packet.len = write(&mut packet.bytes) as u16;
         packet
     }
 

@@ -132,9 +132,11 @@ impl Inav {
 
     /// Takes the readings of a simulator message in; the reply has the attitude so far.
     fn simulate(&mut self, message: simulator::Repr, now_us: u64) -> Message {
-        if message.version != simulator::VERSION || message.flags & simulator::ENABLE == 0 {
+        let (known, stays) = (message.version == simulator::VERSION, message.flags & simulator::ENABLE != 0);
+        if !known || !stays {
+            // Told to leave the simulator, it does (read in `fc_msp.c`).
             self.held = None;
-            self.record.counts.refused += 1;
+            self.record.counts.refused += u64::from(!known);
             return Message::Empty { direction: Direction::Reply, command: simulator::COMMAND };
         }
         self.record.counts.samples += 1;
