@@ -34,6 +34,7 @@ const KEYS: &[Case] = &[
         &[("4:1", "`nois_std` is not a key of [gyro]: did you mean `noise_std`?")],
     ),
     (gyro!("Range = \"1 rad/s\""), &[("4:1", "`Range`|did you mean `range`?")]),
+    (gyro!("wind = \"3 m/s\""), &[("4:1", "`wind` belongs to [earth]")]),
     (gyro!("xyzzy = 1"), &[("4:1", "`xyzzy` is not a key of [gyro], which has|rate, |noise_std")]),
     ("sed = 1\n[mag]\nrate = \"1 Hz\"\n", &[("1:1", "`sed` is not a key of a scene: did you mean `seed`?")]),
     (

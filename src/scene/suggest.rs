@@ -50,6 +50,7 @@ pub fn elsewhere(path: &str, key: &str) -> Option<&'static str> {
         "hard_iron" | "soft_iron" if path != "mag" => "belongs to a magnetometer",
         "g_sensitivity" if path != "gyro" => "belongs to a gyro",
         "lever_arm" if path != "accel" => "belongs to an accelerometer",
+        "wind" => "belongs to [earth]: every sensor of the air feels it",
         "vibration" => "belongs to a gyro or an accelerometer",
         _ => return None,
     };
