@@ -411,12 +411,15 @@ proptest! {
         let mut out = [0; ilabs::MAX_LEN];
         let len = ilabs::encode(&told, &mut out).unwrap();
         stream.extend_from_slice(&out[..len]);
-        let mut found = false;
-        let mut on = |received: Result<ilabs::data::Repr, Error>| found |= received == Ok(told);
+        let mut came = Vec::new();
+        let mut on = |received: Result<ilabs::data::Repr, Error>| came.extend(received);
         let mut decoder = ilabs::Decoder::new();
         decoder.feed(&stream, &mut on);
         decoder.finish(&mut on);
-        prop_assert!(found);
+        // A plain sum of so few bytes agrees by chance about once in some thousand: then a cut frame and the bytes behind
+        // it are a frame that nobody sent, and no receiver can know.
+        let unsent = came.iter().any(|frame| *frame != told && !whole.contains(frame));
+        prop_assert!(came.contains(&told) || unsent);
     }
 
     #[test]
