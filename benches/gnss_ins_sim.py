@@ -28,9 +28,11 @@ def main(checkout: str) -> None:
 
     def samples() -> int:
         start = np.array([math.radians(60), math.radians(30), 0, 0, 0, 0, 0, 0, 0])
-        # Command type 1: rates of yaw, pitch, roll and an acceleration forward, for so many seconds.
-        motion = np.array([[1, *np.radians([50, -35, 20]), 0, SECONDS]])
-        output = np.array([[1.0, RATE], [-1.0, RATE]])
+        # Command type 1: rates of yaw, pitch, roll and accelerations along the body's axes, for so many seconds, without
+        # GPS.
+        motion = np.array([[1, *np.radians([50, -35, 20]), 0, 0, 0, SECONDS, 0]])
+        # The IMU's rate without oversampling; neither GPS nor odometer.
+        output = np.array([[1.0, RATE], [-1.0, RATE], [-1.0, RATE]])
         path = pathgen.path_gen(start, motion, output, np.array([10.0, 0.5, 10.0]), ref_frame=1, magnet=True)
         imu, field = path["imu"], path["mag"]
         readings = (

@@ -11,12 +11,19 @@ pub const BOUND_DEG: f64 = 0.2;
 /// What a stand-in's own attitude has to keep to where the firmware itself was measured on such a link: its figure (roll,
 /// pitch and yaw together) and a tenth of a degree.
 pub fn bound_deg(make: Make) -> f64 {
-    match make {
-        Make::ArdupilotIlabs => 0.049 + 0.1,
-        Make::Px4Ilabs => 0.059 + 0.1,
-        Make::ArdupilotSbg => 0.071 + 0.1,
-        _ => BOUND_DEG,
-    }
+    let measured = match make {
+        Make::Px4 => 0.128,
+        Make::Px4Sitl => 0.058,
+        Make::Px4Vectornav => 0.098,
+        Make::Ardupilot => 0.104,
+        Make::ArdupilotMip => 0.266,
+        Make::ArdupilotIlabs => 0.049,
+        Make::Px4Ilabs => 0.059,
+        Make::ArdupilotSbg => 0.071,
+        Make::Inav => 0.121,
+        Make::Betaflight => return BOUND_DEG,
+    };
+    (measured + 0.1_f64).min(BOUND_DEG.max(measured))
 }
 
 /// Who handles a sample some time after it arrived: at its time of arrival the estimate is not of it yet.
