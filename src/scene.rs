@@ -23,7 +23,7 @@ mod keyframes;
 mod nested;
 mod numbers;
 mod output;
-mod output_rate;
+pub(crate) mod output_rate;
 mod outside;
 pub mod parts;
 mod preset;

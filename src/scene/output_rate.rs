@@ -1,6 +1,7 @@
 //! Which rates a part can output, and which are nearest to the one that a scene asks for.
 
-use super::parts::{Filter, OutputRate};
+use super::parts::{self, Filter, OutputRate};
+use crate::sensor::SensorKind;
 use crate::time::Rate;
 
 /// Rates this near are one: no oscillator of these parts is as good as that (a per cent or more by their sheets).
@@ -9,6 +10,13 @@ const SAME: f64 = 0.005;
 /// Whether the part can output this rate.
 pub(super) fn has(rates: &[OutputRate], wanted: Rate) -> bool {
     neighbours(rates, wanted).any(|rate| (rate.as_hz() / wanted.as_hz() - 1.0).abs() < SAME)
+}
+
+/// The part's fastest rate that is not above this one; `None` where its sheet says nothing of rates.
+pub fn at_most(part: &str, kind: SensorKind, most: Rate) -> Option<Rate> {
+    let rates = parts::settings(crate::sensor::parts::find(part, kind)?, kind).ok()?.rates;
+    let not_above = |rate: &Rate| rate.as_hz() <= most.as_hz();
+    neighbours(&rates, most).filter(not_above).max_by(|a, b| a.as_hz().total_cmp(&b.as_hz()))
 }
 
 /// The part's nearest rates, the slower first.
@@ -58,6 +66,13 @@ mod tests {
 
     const MPU: [OutputRate; 2] =
         [OutputRate { rate: Rate::hz(8000), divide: 1 }, OutputRate { rate: Rate::hz(1000), divide: 256 }];
+
+    #[test]
+    fn a_part_has_a_fastest_rate_below_any() {
+        let most = |hz: u32| at_most("MPU-9250", SensorKind::Gyro, Rate::hz(hz)).unwrap().as_hz();
+        assert_eq!([most(404), most(500), most(999), most(1000)], [1000.0 / 3.0, 500.0, 500.0, 1000.0]);
+        assert_eq!(at_most("no such part", SensorKind::Gyro, Rate::hz(400)), None);
+    }
 
     #[test]
     fn a_divided_rate_is_one_of_the_parts_and_its_neighbours_are_not() {

@@ -2,6 +2,7 @@
 
 use crate::link::{Address, STANDARD_BAUDS, bytes_per_second};
 use crate::report::number;
+use crate::scene::output_rate::at_most;
 use crate::scene::{Output, Overload, Plan};
 use crate::sensor::SensorPlan;
 use crate::time::Rate;
@@ -36,7 +37,8 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L>
         ways
     }
 
-    /// The highest whole rate in Hz that fits when the faster sensors slow down to it.
+    /// The highest whole rate in Hz that fits when the faster sensors slow down to it; of a part the fastest that it has up
+    /// to there.
     fn lower_rate(&self) -> Option<String> {
         let at = |hz: u32| {
             let mut sensors = self.plan.sensors.clone();
@@ -51,11 +53,15 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L>
             let hz = fits + (not - fits) / 2;
             *(if at(hz) <= self.capacity { &mut fits } else { &mut not }) = hz;
         }
-        let slowed: Vec<_> =
-            self.plan.sensors.iter().filter(|sensor| sensor.rate.as_hz() > f64::from(fits)).collect();
-        let sets: Vec<_> =
-            slowed.iter().map(|sensor| format!("--set {}.rate='{fits} Hz'", sensor.kind)).collect();
-        (fits > 0).then(|| format!("a lower rate: {} needs {} bytes/s", sets.join(" "), number(at(fits))))
+        let mut sensors = self.plan.sensors.clone();
+        let mut sets = Vec::new();
+        for sensor in sensors.iter_mut().filter(|sensor| sensor.rate.as_hz() > f64::from(fits)) {
+            let most = Rate::hz(fits.max(1));
+            sensor.rate = sensor.part.and_then(|part| at_most(part, sensor.kind, most)).unwrap_or(most);
+            sets.push(format!("--set {}.rate='{}'", sensor.kind, sensor.rate));
+        }
+        let needed = (self.load)(&sensors, self.output.to.protocol, self.output.wire).0;
+        (fits > 0).then(|| format!("a lower rate: {} needs {} bytes/s", sets.join(" "), number(needed)))
     }
 
     /// Each other layout and protocol that fits, or a sentence that none does.
