@@ -112,7 +112,7 @@ fn hear(job: &Job, end: SimTime) -> Result<Heard, Refusal> {
     Ok(heard?)
 }
 
-/// Writes what a controller told of its attitude, in its own time.
+/// Writes the attitudes that a controller sent, with the times of its own clock.
 ///
 /// # Errors
 /// It told none, or the folder cannot be written.

@@ -15,7 +15,7 @@ use tokio::time::{Instant, sleep, timeout_at};
 /// itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A reader that is gone for this long is told of.
+/// After a reader is gone for this long, the user gets a notice.
 const GONE: Duration = Duration::from_secs(1);
 
 /// The control side's half of an output: its link, observed without delaying the pacing thread.
