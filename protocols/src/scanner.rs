@@ -92,3 +92,43 @@ impl<const N: usize> Scanner<N> {
         self.len -= count;
     }
 }
+
+/// Declares a format's public decoder over a [`Scanner`] of so many bytes: its docs, the format, what it finds, and the
+/// docs of `feed`.
+macro_rules! decoder {
+    (
+        $(#[$doc:meta])*
+        $format:ident in $held:expr => $packet:ty;
+        $(#[$feed:meta])*
+        feed
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone)]
+        pub struct Decoder($crate::scanner::Scanner<{ $held }>);
+
+        impl Default for Decoder {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+
+        impl Decoder {
+            /// A decoder that holds nothing.
+            pub const fn new() -> Self {
+                Self($crate::scanner::Scanner::new())
+            }
+
+            $(#[$feed])*
+            pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<$packet, $crate::error::Error>)) {
+                self.0.feed::<$format>(bytes, &mut on);
+            }
+
+            /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
+            pub fn finish(&mut self, mut on: impl FnMut(Result<$packet, $crate::error::Error>)) {
+                self.0.finish::<$format>(&mut on);
+            }
+        }
+    };
+}
+
+pub(crate) use decoder;

@@ -2,42 +2,22 @@
 
 use super::state::{self, Payload, Repr};
 use crate::error::Error;
-use crate::scanner::{Format, Scanner, Verdict};
+use crate::scanner::{Format, Verdict, decoder};
 
 /// A packet and the byte after it.
 const HELD_LEN: usize = state::LEN + 1;
 
-/// Finds packets in a stream; holds what has come of the next one.
-///
-/// Nothing marks a packet's start and no checksum covers it, so a packet is whatever
-/// [is plausible](Repr::is_plausible) in so many bytes. Damage that leaves it plausible is not seen; after other
-/// damage, or a datagram of another length, it looks on from the next byte.
-#[derive(Debug, Clone)]
-pub struct Decoder(Scanner<HELD_LEN>);
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Decoder {
-    /// A decoder that holds nothing.
-    pub const fn new() -> Self {
-        Self(Scanner::new())
-    }
-
+decoder! {
+    /// Finds packets in a stream; holds what has come of the next one.
+    ///
+    /// Nothing marks a packet's start and no checksum covers it, so a packet is whatever
+    /// [is plausible](Repr::is_plausible) in so many bytes. Damage that leaves it plausible is not seen; after other
+    /// damage, or a datagram of another length, it looks on from the next byte.
+    Betaflight in HELD_LEN => Repr;
     /// Takes more of the stream and calls `on` with each packet that it completes.
     ///
     /// Damage is reported once as [`Error::Malformed`], however many bytes it takes to be in step again.
-    pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<Repr, Error>)) {
-        self.0.feed::<Betaflight>(bytes, &mut on);
-    }
-
-    /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
-    pub fn finish(&mut self, mut on: impl FnMut(Result<Repr, Error>)) {
-        self.0.finish::<Betaflight>(&mut on);
-    }
+    feed
 }
 
 /// How a packet is recognised.

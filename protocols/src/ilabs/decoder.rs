@@ -3,7 +3,7 @@
 use super::{HEADER_LEN, START, SUM_LEN, UNCOUNTED_LEN, data, sum};
 use crate::bytes;
 use crate::error::Error;
-use crate::scanner::{Format, Scanner, Verdict};
+use crate::scanner::{Format, Verdict, decoder};
 
 /// The longest frame that is waited for: ArduPilot's driver holds no longer one.
 const LONGEST: usize = 256;
@@ -14,38 +14,18 @@ const SHORTEST: usize = HEADER_LEN + 3 + SUM_LEN;
 /// The longest frame and the byte after it.
 const HELD_LEN: usize = LONGEST + 1;
 
-/// Finds frames in a stream; holds what has come of the next one.
-///
-/// After damage it looks on from the byte behind the false start, so that a damaged length hides no frame. The sum finds
-/// a flipped bit, but not two that cancel.
-#[derive(Debug, Clone)]
-pub struct Decoder(Scanner<HELD_LEN>);
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Decoder {
-    /// A decoder that holds nothing.
-    pub const fn new() -> Self {
-        Self(Scanner::new())
-    }
-
+decoder! {
+    /// Finds frames in a stream; holds what has come of the next one.
+    ///
+    /// After damage it looks on from the byte behind the false start, so that a damaged length hides no frame. The sum finds
+    /// a flipped bit, but not two that cancel.
+    Ilabs in HELD_LEN => data::Repr;
     /// Takes more of the stream and calls `on` with each frame that it completes.
     ///
     /// Damage is reported once, however many bytes it takes to be in step again: [`Error::Checksum`], or
     /// [`Error::Malformed`] where no frame starts. A whole frame with an id that is not known here is
     /// [`Error::UnknownType`], one whose data are not as long as its ids say [`Error::Length`].
-    pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<data::Repr, Error>)) {
-        self.0.feed::<Ilabs>(bytes, &mut on);
-    }
-
-    /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
-    pub fn finish(&mut self, mut on: impl FnMut(Result<data::Repr, Error>)) {
-        self.0.finish::<Ilabs>(&mut on);
-    }
+    feed
 }
 
 /// How a frame is recognised.

@@ -2,43 +2,23 @@
 
 use super::{CHECKSUM_LEN, HEADER_LEN, START, fletcher, imu};
 use crate::error::Error;
-use crate::scanner::{Format, Scanner, Verdict};
+use crate::scanner::{Format, Verdict, decoder};
 
 /// The longest packet and the byte after it.
 const HELD_LEN: usize = HEADER_LEN + u8::MAX as usize + CHECKSUM_LEN + 1;
 
-/// Finds packets in a stream; holds what has come of the next one.
-///
-/// After damage it looks on from the byte behind the false start, so that a damaged length hides no
-/// packet.
-#[derive(Debug, Clone)]
-pub struct Decoder(Scanner<HELD_LEN>);
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Decoder {
-    /// A decoder that holds nothing.
-    pub const fn new() -> Self {
-        Self(Scanner::new())
-    }
-
+decoder! {
+    /// Finds packets in a stream; holds what has come of the next one.
+    ///
+    /// After damage it looks on from the byte behind the false start, so that a damaged length hides no
+    /// packet.
+    Mip in HELD_LEN => imu::Repr;
     /// Takes more of the stream and calls `on` with each packet that it completes.
     ///
     /// Damage is reported once, however many bytes it takes to be in step again:
     /// [`Error::Checksum`], or [`Error::Malformed`] where no packet starts. A whole packet of
     /// another descriptor is [`Error::UnknownType`].
-    pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<imu::Repr, Error>)) {
-        self.0.feed::<Mip>(bytes, &mut on);
-    }
-
-    /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
-    pub fn finish(&mut self, mut on: impl FnMut(Result<imu::Repr, Error>)) {
-        self.0.finish::<Mip>(&mut on);
-    }
+    feed
 }
 
 /// How a packet is recognised.

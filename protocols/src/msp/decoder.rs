@@ -3,7 +3,7 @@
 use super::{CRC, CRC_LEN, Direction, HEADER_LEN, Message, Received, START, field};
 use crate::bytes;
 use crate::error::Error;
-use crate::scanner::{Format, Scanner, Verdict};
+use crate::scanner::{Format, Verdict, decoder};
 
 /// Bytes of the longest payload that is taken in: a reply to `simulator` with a screen of text has a hundred.
 const MAX_HELD_PAYLOAD: usize = 512;
@@ -11,38 +11,18 @@ const MAX_HELD_PAYLOAD: usize = 512;
 /// The longest frame and the byte after it.
 const HELD_LEN: usize = HEADER_LEN + MAX_HELD_PAYLOAD + CRC_LEN + 1;
 
-/// Finds frames in a stream; holds what has come of the next one.
-///
-/// After damage it looks on from the byte behind the false start, so that a damaged size hides no
-/// frame. A frame of more than 512 bytes of payload is damage.
-#[derive(Debug, Clone)]
-pub struct Decoder(Scanner<HELD_LEN>);
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Decoder {
-    /// A decoder that holds nothing.
-    pub const fn new() -> Self {
-        Self(Scanner::new())
-    }
-
+decoder! {
+    /// Finds frames in a stream; holds what has come of the next one.
+    ///
+    /// After damage it looks on from the byte behind the false start, so that a damaged size hides no
+    /// frame. A frame of more than 512 bytes of payload is damage.
+    Msp in HELD_LEN => Received;
     /// Takes more of the stream and calls `on` with each frame that it completes.
     ///
     /// Damage is reported once, however many bytes it takes to be in step again:
     /// [`Error::Checksum`], [`Error::Malformed`] where no frame starts; [`Error::Length`] for a
     /// frame whose payload is not as long as its command's.
-    pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<Received, Error>)) {
-        self.0.feed::<Msp>(bytes, &mut on);
-    }
-
-    /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
-    pub fn finish(&mut self, mut on: impl FnMut(Result<Received, Error>)) {
-        self.0.finish::<Msp>(&mut on);
-    }
+    feed
 }
 
 /// How a frame is recognised.

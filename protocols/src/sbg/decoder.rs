@@ -3,7 +3,7 @@
 use super::{CRC, END, HEADER_LEN, Packet, Received, START, TAIL_LEN, field};
 use crate::bytes;
 use crate::error::Error;
-use crate::scanner::{Format, Scanner, Verdict};
+use crate::scanner::{Format, Verdict, decoder};
 
 /// Bytes of the longest payload that is taken in: a unit's navigation has 72, and a stray start hides no more than this.
 const MAX_HELD_PAYLOAD: usize = 256;
@@ -11,38 +11,18 @@ const MAX_HELD_PAYLOAD: usize = 256;
 /// The longest packet and the byte after it.
 const HELD_LEN: usize = HEADER_LEN + MAX_HELD_PAYLOAD + TAIL_LEN + 1;
 
-/// Finds packets in a stream; holds what has come of the next one.
-///
-/// After damage it looks on from the byte behind the false start, so that a damaged length hides no packet. A packet of
-/// more than 256 bytes of payload is damage.
-#[derive(Debug, Clone)]
-pub struct Decoder(Scanner<HELD_LEN>);
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Decoder {
-    /// A decoder that holds nothing.
-    pub const fn new() -> Self {
-        Self(Scanner::new())
-    }
-
+decoder! {
+    /// Finds packets in a stream; holds what has come of the next one.
+    ///
+    /// After damage it looks on from the byte behind the false start, so that a damaged length hides no packet. A packet of
+    /// more than 256 bytes of payload is damage.
+    Sbg in HELD_LEN => Received;
     /// Takes more of the stream and calls `on` with each packet that it completes.
     ///
     /// Damage is reported once, however many bytes it takes to be in step again: [`Error::Checksum`],
     /// [`Error::Malformed`] where no packet starts or ends; [`Error::Length`] for a packet whose payload is shorter than
     /// its id's.
-    pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<Received, Error>)) {
-        self.0.feed::<Sbg>(bytes, &mut on);
-    }
-
-    /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
-    pub fn finish(&mut self, mut on: impl FnMut(Result<Received, Error>)) {
-        self.0.finish::<Sbg>(&mut on);
-    }
+    feed
 }
 
 /// How a packet is recognised.

@@ -3,42 +3,22 @@
 use super::{CRC, CRC_LEN, MAX_LEN, Packet, SYNC, ahrs, imu, inertial, line, navigation};
 use crate::bytes;
 use crate::error::Error;
-use crate::scanner::{Format, Scanner, Verdict};
+use crate::scanner::{Format, Verdict, decoder};
 
 /// The longest packet and the byte after it.
 const HELD_LEN: usize = MAX_LEN + 1;
 
-/// Finds packets and lines in a stream; holds what has come of the next one.
-///
-/// After damage it looks on from the byte behind the false start, so that damage hides no other
-/// packet. Binary packets of other groups are damage: their length is not known.
-#[derive(Debug, Clone)]
-pub struct Decoder(Scanner<HELD_LEN>);
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Decoder {
-    /// A decoder that holds nothing.
-    pub const fn new() -> Self {
-        Self(Scanner::new())
-    }
-
+decoder! {
+    /// Finds packets and lines in a stream; holds what has come of the next one.
+    ///
+    /// After damage it looks on from the byte behind the false start, so that damage hides no other
+    /// packet. Binary packets of other groups are damage: their length is not known.
+    Vectornav in HELD_LEN => Packet;
     /// Takes more of the stream and calls `on` with each packet that it completes.
     ///
     /// Damage is reported once, however many bytes it takes to be in step again:
     /// [`Error::Checksum`], or [`Error::Malformed`] where no packet starts.
-    pub fn feed(&mut self, bytes: &[u8], mut on: impl FnMut(Result<Packet, Error>)) {
-        self.0.feed::<Vectornav>(bytes, &mut on);
-    }
-
-    /// Judges what is held as if no more were to come: for the end of a stream or a long pause.
-    pub fn finish(&mut self, mut on: impl FnMut(Result<Packet, Error>)) {
-        self.0.finish::<Vectornav>(&mut on);
-    }
+    feed
 }
 
 /// How packets are recognised.
