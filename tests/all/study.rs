@@ -55,13 +55,17 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
 
     let names = [
         "accuracy.csv",
+        "accuracy.json",
         "accuracy.svg",
         "allan.csv",
+        "allan.json",
         "allan.svg",
         "cost.csv",
+        "cost.json",
         "cost.svg",
         "manifest.json",
         "stability.csv",
+        "stability.json",
         "stability.svg",
     ];
     assert_eq!(files(&out), names.map(String::from).into());
@@ -99,7 +103,10 @@ fn one_study_writes_its_own_files_and_an_existing_folder_is_refused_before_anyth
     let done = study(&arguments).assert().success();
     let results: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
     assert!(results["stability"].is_null() && results["quick"] == true, "{results}");
-    assert_eq!(files(&out), ["accuracy.csv", "accuracy.svg", "manifest.json"].map(String::from).into());
+    assert_eq!(
+        files(&out),
+        ["accuracy.csv", "accuracy.json", "accuracy.svg", "manifest.json"].map(String::from).into()
+    );
     let rows = rows(&out.join("accuracy.csv")).1;
     assert_eq!(results["accuracy"].as_array().unwrap().len(), rows.len(), "the same rows for all");
 
@@ -114,7 +121,10 @@ fn the_study_of_stability_writes_its_own_files() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("study");
     study(&["stability", "--quick", "--out", out.to_str().unwrap()]).assert().success();
-    assert_eq!(files(&out), ["manifest.json", "stability.csv", "stability.svg"].map(String::from).into());
+    assert_eq!(
+        files(&out),
+        ["manifest.json", "stability.csv", "stability.json", "stability.svg"].map(String::from).into()
+    );
 }
 
 #[test]
@@ -161,7 +171,7 @@ fn the_cost_of_a_scene_is_told_term_by_term() {
     let names: Vec<_> = terms.iter().map(|term| term["term"].as_str().unwrap()).collect();
     assert!(names[0] == "truth" && names.contains(&"white_noise"), "{names:?}");
     assert!(terms.iter().all(|term| term["ns_per_sample"].as_f64().unwrap() > 0.0));
-    assert_eq!(files(&out), ["cost.csv", "cost.svg", "manifest.json"].map(String::from).into());
+    assert_eq!(files(&out), ["cost.csv", "cost.json", "cost.svg", "manifest.json"].map(String::from).into());
     let table = std::fs::read_to_string(out.join("cost.csv")).unwrap();
     assert_eq!(table.lines().next(), Some("term,ns_per_sample"));
     assert_eq!(table.lines().count(), 1 + names.len());
