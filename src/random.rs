@@ -5,9 +5,9 @@
 //! adding a sensor or a term changes no other's noise. Normal numbers, of which most of a sample's cost consists, come
 //! from [`Normals`]: sixteen of these generators side by side.
 
-mod lanes;
+pub(crate) mod box_muller;
+pub(crate) mod lanes;
 mod normals;
-mod ziggurat;
 
 pub use normals::Normals;
 

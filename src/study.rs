@@ -1,7 +1,7 @@
 //! Every method against every motion: how accurate, at what cost, and where it fails.
 //!
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
-//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory. All give rows for a table; time
+//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory; [`normals`] compares ways to make its random numbers. All give rows for a table; time
 //! comes in as an argument.
 //!
 //! ```
@@ -17,6 +17,7 @@ pub mod allan;
 pub mod cost;
 mod inputs;
 pub mod motions;
+pub mod normals;
 
 pub mod stability;
 

@@ -6,18 +6,15 @@
 use rand::Rng;
 
 /// Generators.
-pub(super) const LANES: usize = 16;
-
-/// Words that come at once.
-pub(super) const CHUNK: usize = 4 * LANES;
+pub(crate) const LANES: usize = 16;
 
 /// The state of sixteen xoshiro256++ (Blackman & Vigna, ACM TOMS 47(4), 2021): word `k` of lane `j` is `[k][j]`.
 #[derive(Clone, Debug)]
-pub(super) struct Lanes([[u64; LANES]; 4]);
+pub(crate) struct Lanes([[u64; LANES]; 4]);
 
 impl Lanes {
     /// Lane after lane from four words each of `seeds`.
-    pub(super) fn new(seeds: &mut impl Rng) -> Lanes {
+    pub(crate) fn new(seeds: &mut impl Rng) -> Lanes {
         let mut state = [[0; LANES]; 4];
         for lane in 0..LANES {
             state.iter_mut().for_each(|word| word[lane] = seeds.next_u64());
@@ -25,9 +22,10 @@ impl Lanes {
         Lanes(state)
     }
 
-    /// The next words: the first of every lane, then the second of every lane, and so on.
+    /// The next words, a multiple of [`LANES`]: the first of every lane, then the second of every lane, and so on.
     #[inline(always)]
-    pub(super) fn fill(&mut self, words: &mut [u64; CHUNK]) {
+    pub(crate) fn fill<const WORDS: usize>(&mut self, words: &mut [u64; WORDS]) {
+        const { assert!(WORDS.is_multiple_of(LANES)) }
         let [a, b, c, d] = &mut self.0;
         for words in words.as_chunks_mut::<LANES>().0 {
             for j in 0..LANES {
@@ -60,7 +58,7 @@ mod tests {
             seed.copy_from_slice(state.as_flattened());
             Xoshiro256PlusPlus::from_seed(seed)
         });
-        let mut words = [0; CHUNK];
+        let mut words = [0; 4 * LANES];
         for _ in 0..100 {
             lanes.fill(&mut words);
             for (i, word) in words.iter().enumerate() {

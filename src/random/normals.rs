@@ -1,12 +1,15 @@
 //! Normal numbers for the three axes of an error term.
 
 use super::Stream;
-use super::lanes::{CHUNK, Lanes};
-use super::ziggurat::TABLE;
+use super::box_muller::{self, PAIRS, Standard};
+use super::lanes::Lanes;
 use crate::os;
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::SplitMix64;
 use std::ops::Range;
+
+/// Numbers that are made at once.
+const CHUNK: usize = 2 * PAIRS;
 
 /// Standard normal numbers, independent on three axes, each axis from a seed of its own. They are made so many at a
 /// time, and handed out in the same order however many are asked for at once.
@@ -55,26 +58,20 @@ impl Normals {
     }
 
     /// Calls `take` with the next `count` of each axis in runs of the same length: where in the count each run is, and
-    /// its numbers. A whole run goes by without being put down.
+    /// its numbers.
     #[inline(always)]
     pub fn runs(&mut self, count: usize, mut take: impl FnMut(Range<usize>, [&[f64]; 3])) {
-        let mut passing = [[0.0; CHUNK]; 3];
         let mut done = 0;
         while done < count {
-            let whole = self.used == CHUNK && count - done >= CHUNK;
-            if whole {
-                make(&mut self.axes, &mut passing);
-            } else if self.used == CHUNK {
+            if self.used == CHUNK {
                 make(&mut self.axes, &mut self.ready);
                 self.used = 0;
             }
-            let (from, source) = if whole { (0, &passing) } else { (self.used, &self.ready) };
+            let from = self.used;
             let length = (CHUNK - from).min(count - done);
-            take(done..done + length, source.each_ref().map(|axis| &axis[from..from + length]));
+            take(done..done + length, self.ready.each_ref().map(|axis| &axis[from..from + length]));
             done += length;
-            if !whole {
-                self.used += length;
-            }
+            self.used += length;
         }
     }
 }
@@ -82,17 +79,19 @@ impl Normals {
 /// The next of each axis.
 #[inline(never)]
 fn make(axes: &mut [Option<Box<Axis>>; 3], normals: &mut [[f64; CHUNK]; 3]) {
-    for (axis, normals) in axes.iter_mut().zip(normals) {
-        if let Some(axis) = axis {
-            os::widest(
-                #[inline(always)]
-                || axis.fill(normals),
-            );
-        }
-    }
+    os::widest(
+        #[inline(always)]
+        || {
+            for (axis, normals) in axes.iter_mut().zip(normals) {
+                if let Some(axis) = axis {
+                    axis.fill(normals);
+                }
+            }
+        },
+    );
 }
 
-/// One axis: the lanes that every number begins with, and a generator for what the ziggurat asks beyond.
+/// One axis: the lanes that every pair of numbers begins with, and a generator for the further bits of their tails.
 #[derive(Clone, Debug)]
 struct Axis {
     lanes: Lanes,
@@ -109,9 +108,9 @@ impl Axis {
 
     #[inline(always)]
     fn fill(&mut self, normals: &mut [f64; CHUNK]) {
-        let mut words = [0; CHUNK];
+        let mut words = [0; PAIRS];
         self.lanes.fill(&mut words);
-        TABLE.convert(&words, normals, &mut self.rest);
+        box_muller::convert::<Standard>(&words, normals, &mut self.rest);
     }
 }
 

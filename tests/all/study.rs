@@ -64,6 +64,9 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
         "cost.json",
         "cost.svg",
         "manifest.json",
+        "normals.csv",
+        "normals.json",
+        "normals.svg",
         "stability.csv",
         "stability.json",
         "stability.svg",
@@ -132,11 +135,11 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
     for (arguments, says) in [
         (
             &["acuracy"][..],
-            "`acuracy` is neither a study (accuracy, stability, cost, allan, all) nor a scene, built in or a file; did you mean `accuracy`?",
+            "`acuracy` is neither a study (accuracy, stability, cost, normals, allan, all) nor a scene, built in or a file; did you mean `accuracy`?",
         ),
         (
             &["acuracy", "coning"],
-            "`acuracy` is not a study (accuracy, stability, cost, allan, all); did you mean `accuracy`?",
+            "`acuracy` is not a study (accuracy, stability, cost, normals, allan, all); did you mean `accuracy`?",
         ),
         (&["coning", "still"], "`coning` is a scene, so `still` is a second one"),
         (&["accuracy", "nowhere.toml"], "neither a scene file"),

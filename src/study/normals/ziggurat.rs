@@ -7,18 +7,14 @@
 //! others draw a height, or one beyond the last layer: what comes out has the normal density to the last bit of its
 //! place, out to 13 σ.
 
-use super::Stream;
-use super::lanes::CHUNK;
+use super::ways::{CHUNK, Convert};
+use crate::random::Stream;
 use rand::Rng;
-use std::sync::LazyLock;
 
 const LAYERS: usize = 512;
 
 /// Where the tail begins: for which 512 layers of area R·f(R) + ∫ f from R on end at the density's top.
-pub(super) const R: f64 = 3.852_046_150_368_391;
-
-/// The layers' edges.
-pub(super) static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
+const R: f64 = 3.852_046_150_368_391;
 
 /// Where each layer ends and how high it begins.
 #[derive(Debug)]
@@ -31,7 +27,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    pub(super) fn new() -> Table {
+    pub fn new() -> Table {
         let tail = libm::sqrt(std::f64::consts::FRAC_PI_2) * libm::erfc(R * std::f64::consts::FRAC_1_SQRT_2);
         let area = R * density(R) + tail;
         let (mut x, mut y) = ([0.0; LAYERS + 1], [0.0; LAYERS + 1]);
@@ -44,25 +40,9 @@ impl Table {
         Table { x, y }
     }
 
-    /// A normal number for each word; `rest` is drawn from where a word does not settle it.
-    #[inline(always)]
-    pub(super) fn convert(&self, words: &[u64; CHUNK], normals: &mut [f64; CHUNK], rest: &mut Stream) {
-        let (words, normals) = (words.as_chunks::<8>().0, normals.as_chunks_mut::<8>().0);
-        for (words, normals) in words.iter().zip(normals) {
-            let mut unsettled = false;
-            for j in 0..8 {
-                normals[j] = self.place(words[j]);
-                unsettled |= normals[j].abs() >= self.x[layer(words[j]) + 1];
-            }
-            if unsettled {
-                self.settle(words, normals, rest);
-            }
-        }
-    }
-
     /// Where a word falls, settled or not.
     #[inline(always)]
-    pub(super) fn place(&self, word: u64) -> f64 {
+    fn place(&self, word: u64) -> f64 {
         across(word) * self.x[layer(word)]
     }
 
@@ -92,11 +72,22 @@ impl Table {
             word = rest.next_u64();
         }
     }
+}
 
-    /// x\[i\] from the lowest layer that is no wider than R, to 0.
-    #[cfg(test)]
-    pub(super) fn edges(&self) -> &[f64] {
-        &self.x[1..]
+impl Convert<CHUNK> for Table {
+    #[inline(always)]
+    fn convert(&self, words: &[u64; CHUNK], numbers: &mut [f64; CHUNK], rest: &mut Stream) {
+        let (words, numbers) = (words.as_chunks::<8>().0, numbers.as_chunks_mut::<8>().0);
+        for (words, numbers) in words.iter().zip(numbers) {
+            let mut unsettled = false;
+            for j in 0..8 {
+                numbers[j] = self.place(words[j]);
+                unsettled |= numbers[j].abs() >= self.x[layer(words[j]) + 1];
+            }
+            if unsettled {
+                self.settle(words, numbers, rest);
+            }
+        }
     }
 }
 
@@ -127,7 +118,7 @@ fn density(x: f64) -> f64 {
 
 /// From beyond R (Marsaglia, *Generating a Variable from the Tail of the Normal Distribution*, Technometrics 6(1),
 /// 1964).
-pub(super) fn tail(rest: &mut Stream) -> f64 {
+fn tail(rest: &mut Stream) -> f64 {
     loop {
         let beyond = -libm::log(unit(rest)) / R;
         if -2.0 * libm::log(unit(rest)) > beyond * beyond {
