@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (mut rate, mut truth) = (Vec::new(), Vec::new());
     let mut player = Player::new(&plan, plan.duration, BLOCK);
-    while let Some(columns) = player.play_columns() {
+    while let Some(columns) = player.play_columns(ratetable::motion::Wants::NONE) {
         // One column an axis: z of the gyroscope, rad/s.
         rate.extend_from_slice(&columns.sensor(0).reading[2]);
         truth.extend(columns.truth.iter().map(|truth| (truth.t, truth.attitude)));

@@ -30,7 +30,7 @@ mod stepped;
 mod trajectory;
 mod waypoints;
 
-pub use trajectory::{Course, Force, Misfit, Push, Track, Trajectory, Truth};
+pub use trajectory::{Course, Force, Misfit, Push, Track, Trajectory, Truth, TruthColumns, Wants};
 
 use crate::double::Double;
 use crate::geometry::{Attitude, Axes, Body, Nav, Vector};

@@ -22,9 +22,9 @@ pub use feed::Feed;
 
 use crate::earth::Place;
 use crate::geometry::{Body, Nav, Vector};
-use crate::motion::{Trajectory, Truth};
+use crate::motion::{Trajectory, Truth, TruthColumns, Wants};
 use crate::scene::Plan;
-use crate::schedule::{Due, Schedule, Ticks};
+use crate::schedule::{Schedule, Ticks};
 use crate::sensor::{
     Block, Fix, Measured, Measurement, Position, REFERENCE_TEMPERATURE, Reading, Senses, Sensor, SensorKind,
     Shape,
@@ -48,8 +48,8 @@ pub struct Moment<'a> {
 /// A block: the truth at every distinct tick, and each sensor's samples.
 #[derive(Clone, Copy)]
 pub struct Columns<'a> {
-    /// At every distinct tick of any sensor.
-    pub truth: &'a [Truth],
+    /// At every distinct tick of any sensor; what was not asked for may have no values.
+    pub truth: &'a TruthColumns,
     channels: &'a [Channel],
 }
 
@@ -80,9 +80,11 @@ pub struct Player<'a> {
     trajectory: &'a Trajectory,
     schedule: Schedule,
     channels: Vec<Channel>,
-    due: Vec<Due>,
-    times: Vec<SimTime>,
-    truth: Vec<Truth>,
+    /// What the sensors need of the truth.
+    wants: Wants,
+    truth: TruthColumns,
+    /// Which sensors are due at each of its times: bit i is set for sensor i.
+    due: Vec<u32>,
     block: usize,
 }
 
@@ -102,39 +104,36 @@ impl<'a> Player<'a> {
             let feed = Feed::new(plan_of, origin, plan.seed, &sensor);
             Channel { kind: plan_of.kind, origin, sensor, block: Block::default(), done: 0, feed }
         });
+        let channels: Vec<_> = channels.collect();
         Player {
             trajectory: &plan.trajectory,
             schedule: Schedule::new(ticks, end),
-            channels: channels.collect(),
+            wants: channels.iter().fold(Wants::NONE, |wants, channel| wants | channel.feed.wants()),
+            channels,
+            truth: TruthColumns::default(),
             due: Vec::with_capacity(block),
-            times: Vec::with_capacity(block),
-            truth: Vec::with_capacity(block),
             block: block.max(1),
         }
     }
 
-    /// Computes the next block; false at the end.
-    fn next_block(&mut self) -> bool {
+    /// Computes the next block, with so much of the truth; false at the end.
+    fn next_block(&mut self, wants: Wants) -> bool {
         for channel in &mut self.channels {
             channel.done += channel.block.len() as u64;
             channel.block.clear();
         }
-        self.due.clear();
-        self.due.extend(self.schedule.by_ref().take(self.block));
-        self.truth.clear();
-        self.times.clear();
-        self.times.extend(self.due.iter().map(|due| due.t));
-        self.trajectory.fill(&self.times, &mut self.truth);
+        self.schedule.fill(self.block, &mut self.truth.t, &mut self.due);
+        self.trajectory.fill(&mut self.truth, self.wants | wants);
         for (i, channel) in self.channels.iter_mut().enumerate() {
-            channel.fill(i, &self.due, &self.truth, self.trajectory);
+            channel.fill(1 << i, &self.due, &self.truth, self.trajectory);
         }
         !self.due.is_empty()
     }
 
     /// Computes the next block and returns it as columns, one sensor at a time: the fastest way where no order
-    /// across sensors is needed. `None` at the end.
-    pub fn play_columns(&mut self) -> Option<Columns<'_>> {
-        self.next_block().then_some(Columns { truth: &self.truth, channels: &self.channels })
+    /// across sensors is needed. `wants` are the columns of the truth that the caller reads; `None` at the end.
+    pub fn play_columns(&mut self, wants: Wants) -> Option<Columns<'_>> {
+        self.next_block(wants).then_some(Columns { truth: &self.truth, channels: &self.channels })
     }
 
     /// Computes the next block and passes each of its moments to `each`, in time order; false at the end.
@@ -142,20 +141,20 @@ impl<'a> Player<'a> {
     /// # Errors
     /// An error of `each` stops the block and is returned.
     pub fn play_block<E>(&mut self, mut each: impl FnMut(Moment<'_>) -> Result<(), E>) -> Result<bool, E> {
-        if !self.next_block() {
+        if !self.next_block(Wants::ALL) {
             return Ok(false);
         }
         let mut at = [0; 32];
         let mut readings = Vec::with_capacity(self.channels.len());
-        for (due, truth) in self.due.iter().zip(&self.truth) {
+        for (tick, &due) in self.due.iter().enumerate() {
             readings.clear();
-            for (i, channel) in self.channels.iter().enumerate().filter(|(i, _)| due.sensors >> i & 1 == 1) {
+            for (i, channel) in self.channels.iter().enumerate().filter(|(i, _)| due >> i & 1 == 1) {
                 if !channel.block.missing.get(at[i]).is_some_and(|&missing| missing) {
                     channel.push_reading(i, at[i], &mut readings);
                 }
                 at[i] += 1;
             }
-            each(Moment { t: due.t, truth, readings: &readings })?;
+            each(Moment { t: self.truth.t[tick], truth: &self.truth.truth(tick), readings: &readings })?;
         }
         Ok(true)
     }
@@ -171,17 +170,13 @@ impl<'a> Player<'a> {
 }
 
 impl Channel {
-    fn fill(&mut self, i: usize, due: &[Due], truth: &[Truth], trajectory: &Trajectory) {
-        let mine = |due: &Due| due.sensors >> i & 1 == 1;
-        let plain = self.feed.is_plain();
-        if plain && due.iter().all(mine) {
-            self.feed.extend(truth.iter(), &mut self.block);
-        } else if plain {
-            let mine = due.iter().zip(truth).filter(|(due, _)| mine(due));
-            self.feed.extend(mine.map(|(_, truth)| truth), &mut self.block);
+    /// Computes the samples of the ticks whose mask in `due` has the bit `mine`.
+    fn fill(&mut self, mine: u32, due: &[u32], truth: &TruthColumns, trajectory: &Trajectory) {
+        if self.feed.is_plain() {
+            self.feed.extend(truth, due, mine, &mut self.block);
         } else {
-            for (due, truth) in due.iter().zip(truth).filter(|(due, _)| mine(due)) {
-                self.feed.push(due.t, truth, trajectory, &mut self.block);
+            for i in (0..due.len()).filter(|&i| due[i] & mine != 0) {
+                self.feed.push(truth.t[i], &truth.truth(i), trajectory, &mut self.block);
             }
         }
         self.sensor.read(&mut self.block);

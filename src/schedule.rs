@@ -58,6 +58,28 @@ impl Schedule {
     }
 }
 
+impl Schedule {
+    /// Replaces what is in `times` and `sensors` by the next `count` distinct ticks, or by those that remain: when, and
+    /// of which sensors.
+    pub fn fill(&mut self, count: usize, times: &mut Vec<SimTime>, sensors: &mut Vec<u32>) {
+        times.clear();
+        sensors.clear();
+        if let [group] = &mut self.groups[..] {
+            let Ticks { rate, phase } = group.ticks;
+            rate.extend_ticks(phase, group.k, count as u64, times);
+            times.truncate(times.partition_point(|&t| t < self.end));
+            sensors.resize(times.len(), group.sensors);
+            group.k += times.len() as u64;
+            group.next = group.ticks.phase + group.ticks.rate.tick(group.k);
+            return;
+        }
+        for due in self.take(count) {
+            times.push(due.t);
+            sensors.push(due.sensors);
+        }
+    }
+}
+
 impl Iterator for Schedule {
     type Item = Due;
 
@@ -86,6 +108,26 @@ mod tests {
         let due: Vec<_> = Schedule::new([at(1000), at(500)], SimTime(3_000_000)).collect();
         let expected = [(0, 0b11), (1_000_000, 0b01), (2_000_000, 0b11)];
         assert_eq!(due, expected.map(|(t, sensors)| Due { t: SimTime(t), sensors }));
+    }
+
+    #[test]
+    fn ticks_by_the_block_are_those_one_by_one() {
+        let end = SimTime(1_000_000_007);
+        let odd = Ticks { rate: Rate::new(400, 3).unwrap(), phase: SimTime(1234) };
+        for sensors in [vec![at(1125), at(1125)], vec![odd], vec![at(1000), odd, at(50)], vec![]] {
+            let one_by_one: Vec<_> = Schedule::new(sensors.clone(), end).collect();
+            let (mut schedule, mut all) = (Schedule::new(sensors, end), Vec::new());
+            let (mut times, mut masks) = (Vec::new(), Vec::new());
+            for count in [1, 2, 64, 300].into_iter().cycle() {
+                schedule.fill(count, &mut times, &mut masks);
+                if times.is_empty() {
+                    break;
+                }
+                assert!(times.len() == masks.len() && times.len() <= count);
+                all.extend(times.iter().zip(&masks).map(|(&t, &sensors)| Due { t, sensors }));
+            }
+            assert_eq!(all, one_by_one);
+        }
     }
 
     #[test]

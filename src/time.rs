@@ -128,6 +128,17 @@ impl Rate {
         SimTime(i64::try_from(ns).unwrap_or(i64::MAX))
     }
 
+    /// Appends when ticks `first`, `first + 1` … are due after `phase`, so many of them, as [`Rate::tick`] has each.
+    pub fn extend_ticks(self, phase: SimTime, first: u64, count: u64, times: &mut Vec<SimTime>) {
+        let last = (first + count).checked_mul(self.whole_ns).and_then(|ns| i64::try_from(ns).ok());
+        match last.and_then(|last| last.checked_add(phase.0)) {
+            Some(_) if self.whole_ns > 0 => {
+                times.extend((first..first + count).map(|k| SimTime(phase.0 + (k * self.whole_ns) as i64)));
+            }
+            _ => times.extend((first..first + count).map(|k| phase + self.tick(k))),
+        }
+    }
+
     /// How many ticks so many seconds hold, where that is a whole number: then the ticks after them are those after 0.
     pub fn whole_ticks(self, seconds: u64) -> Option<u64> {
         let ticks = self.numerator.checked_mul(seconds)?;
@@ -191,6 +202,19 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|k| rate.tick(k).0), [0, 7_500_000, 15_000_000, 22_500_000]);
         let rate = Rate::hz(1125);
         assert_eq!([1, 2, 9].map(|k| rate.tick(k).0), [888_889, 1_777_778, 8_000_000]);
+    }
+
+    #[test]
+    fn many_ticks_are_those_one_by_one_to_the_end_of_time() {
+        for rate in [Rate::hz(1000), Rate::hz(1125), Rate::new(400, 3).unwrap(), Rate::new(1, 1000).unwrap()]
+        {
+            for (phase, first) in [(0, 0), (1234, 5), (0, 9_223_372_000_000), (i64::MAX - 5_000_000, 0)] {
+                let mut times = vec![SimTime(7)];
+                rate.extend_ticks(SimTime(phase), first, 50, &mut times);
+                let one_by_one = (first..first + 50).map(|k| SimTime(phase) + rate.tick(k));
+                assert!(times.into_iter().eq([SimTime(7)].into_iter().chain(one_by_one)), "{rate} {phase}");
+            }
+        }
     }
 
     #[test]

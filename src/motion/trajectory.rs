@@ -1,11 +1,12 @@
 //! The whole truth of a scene: a sequence of segments, forces over them, gravity and field.
 
+mod columns;
 mod track;
 mod turning;
 
+pub use columns::{TruthColumns, Wants};
 pub use track::{Course, Misfit, Track};
 
-use super::stepped::Stepped;
 use super::{Kinematics, Motion, rest};
 use crate::double::Double;
 use crate::geometry::{Attitude, Body, Nav, Rotation, Vector};
@@ -167,54 +168,6 @@ impl Trajectory {
     pub fn at(&self, t: SimTime) -> Truth {
         let segment = self.segment(t);
         self.in_segment(segment, t, (t - segment.start).exact_seconds())
-    }
-
-    /// Appends the truth at each of `times`, which are in order, to `truth`.
-    pub fn fill(&self, times: &[SimTime], truth: &mut Vec<Truth>) {
-        let mut rest = times;
-        while let Some(&first) = rest.first() {
-            let segment = self.segment(first);
-            let (within, after) = rest.split_at(rest.partition_point(|&t| t < segment.end).max(1));
-            match segment.motion.constant_rate() {
-                Some(rate) => self.fill_turning(segment, rate, within, truth),
-                None => truth.extend(
-                    within.iter().map(|&t| self.in_segment(segment, t, (t - segment.start).exact_seconds())),
-                ),
-            }
-            rest = after;
-        }
-    }
-
-    /// The same at a constant rate, eight at a time.
-    fn fill_turning(&self, segment: &Segment, rate: Vector<Body>, times: &[SimTime], truth: &mut Vec<Truth>) {
-        let mut stepped = Stepped::new(rate.v);
-        let (eights, rest) = times.as_chunks::<8>();
-        for times in eights {
-            self.turning(&mut stepped, segment, rate, *times, truth);
-        }
-        for &t in rest {
-            self.turning(&mut stepped, segment, rate, [t], truth);
-        }
-    }
-
-    fn turning<const N: usize>(
-        &self,
-        stepped: &mut Stepped,
-        segment: &Segment,
-        rate: Vector<Body>,
-        times: [SimTime; N],
-        truth: &mut Vec<Truth>,
-    ) {
-        let since = times.map(|t| t - segment.start);
-        let many = stepped.at(&*segment.motion, segment.attitude, since);
-        let (force, field) = (many.to_body(-self.gravity), many.to_body(self.field));
-        let vector =
-            |columns: &[[f64; N]; 3], i: usize| Vector::new(columns[0][i], columns[1][i], columns[2][i]);
-        truth.extend((0..N).map(|i| {
-            let (t, attitude, mut force) = (times[i], many.attitude(i), vector(&force, i));
-            self.pushes(t, attitude.inverse()).for_each(|push| force += push);
-            Truth { t, attitude, rate, force, field: vector(&field, i) }
-        }));
     }
 
     fn segment(&self, t: SimTime) -> &Segment {

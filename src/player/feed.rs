@@ -4,7 +4,7 @@
 use super::sensed;
 use crate::earth::Place;
 use crate::geometry::{Attitude, Body, Nav, Vector};
-use crate::motion::{Course, Track, Trajectory, Truth};
+use crate::motion::{Course, Track, Trajectory, Truth, TruthColumns, Wants};
 use crate::random::Normals;
 use crate::sensor::block::{self, Block, Column};
 use crate::sensor::{
@@ -44,17 +44,42 @@ impl Feed {
         at_ticks && self.arm.is_none() && self.aid.is_none()
     }
 
-    /// Adds samples that equal the truth at their ticks.
-    pub(super) fn extend<'t>(&self, truth: impl Iterator<Item = &'t Truth> + Clone, block: &mut Block) {
-        // A separate loop for each kind: the choice of the field does not repeat for every sample.
-        match self.kind.row().senses {
-            Senses::Rate => block.extend(truth.clone().map(|truth| truth.rate)),
-            Senses::Force => block.extend(truth.clone().map(|truth| truth.force)),
-            Senses::Field => block.extend(truth.clone().map(|truth| truth.field)),
-            Senses::Course | Senses::Air(_) => {}
+    /// What [`Feed::extend`] or [`Feed::push`] reads of the truth.
+    pub(super) fn wants(&self) -> Wants {
+        if !self.is_plain() {
+            return Wants::ALL;
         }
+        let senses = &self.kind.row().senses;
+        Wants {
+            attitude: false,
+            rate: matches!(senses, Senses::Rate),
+            force: self.force || matches!(senses, Senses::Force),
+            field: matches!(senses, Senses::Field),
+        }
+    }
+
+    /// Adds samples that equal the truth at the ticks whose mask in `due` has the bit `mine`.
+    pub(super) fn extend(&self, truth: &TruthColumns, due: &[u32], mine: u32, block: &mut Block) {
+        let source = match self.kind.row().senses {
+            Senses::Rate => &truth.rate,
+            Senses::Force => &truth.force,
+            Senses::Field => &truth.field,
+            Senses::Course | Senses::Air(_) => return,
+        };
+        let all = due.iter().fold(mine, |all, due| all & due) == mine;
+        let copy = |from: &[Vec<f64>; 3], to: &mut [Vec<f64>; 3]| {
+            for (from, to) in from.iter().zip(to) {
+                if all {
+                    to.extend_from_slice(from);
+                } else {
+                    let mine = from.iter().zip(due).filter(|(_, due)| *due & mine != 0);
+                    to.extend(mine.map(|(value, _)| value));
+                }
+            }
+        };
+        copy(source, &mut block.truth);
         if self.force {
-            block::extend(&mut block.force, truth.map(|truth| truth.force));
+            copy(&truth.force, &mut block.force);
         }
     }
 

@@ -1,7 +1,5 @@
 //! The samples that a sensor is given and what it makes of them, as columns.
 
-use crate::geometry::{Body, Vector};
-
 /// One column a body axis.
 pub type Columns = [Vec<f64>; 3];
 
@@ -86,23 +84,11 @@ impl Block {
     pub fn push(&mut self, truth: [f64; 3]) {
         push(&mut self.truth, truth);
     }
-
-    /// Adds samples by their error-free readings.
-    pub fn extend(&mut self, truth: impl Iterator<Item = Vector<Body>> + Clone) {
-        extend(&mut self.truth, truth);
-    }
 }
 
 /// Adds one value to each of three columns.
 pub fn push(columns: &mut Columns, v: [f64; 3]) {
     for (column, value) in columns.iter_mut().zip(v) {
         column.push(value);
-    }
-}
-
-/// Adds vectors to three columns.
-pub fn extend(columns: &mut Columns, vectors: impl Iterator<Item = Vector<Body>> + Clone) {
-    for (axis, column) in columns.iter_mut().enumerate() {
-        column.extend(vectors.clone().map(|v| v.v[axis]));
     }
 }

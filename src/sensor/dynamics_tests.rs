@@ -353,7 +353,8 @@ fn flicker_needs_a_size_and_a_band_and_takes_the_place_of_the_gauss_markov_proce
 fn a_term_that_is_not_used_has_nothing_filled_for_it() {
     let plan = plan(&format!("{CONE}[gyro]\nrate = \"100 Hz\"\nnoise_std = \"1 rad/s\""));
     let mut player = crate::player::Player::new(&plan, plan.duration, 64);
-    let block = player.play_columns().map(|columns| columns.sensor(0).clone()).unwrap();
+    let block =
+        player.play_columns(crate::motion::Wants::NONE).map(|columns| columns.sensor(0).clone()).unwrap();
     assert!(!block.is_empty() && block.temperature.is_empty());
     assert!([&block.force, &block.late, &block.arm].iter().all(|columns| columns.iter().all(Vec::is_empty)));
     assert_eq!(in_blocks(&plan, 7), in_blocks(&plan, 64));

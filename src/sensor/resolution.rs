@@ -34,29 +34,17 @@ impl Term for Quantise {
         let (lsb, per_unit) = (self.lsb, 1.0 / self.lsb);
         // Rounding treats both signs alike.
         self.mount.on_chip(&mut block.reading, |column, _| {
-            let beyond = |beyond: bool, x: &f64| beyond | (x.abs() >= SMALL * lsb);
-            if column.iter().fold(false, beyond) {
-                column.iter_mut().for_each(|x| *x = libm::round(*x * per_unit) * lsb);
-            } else {
-                column.iter_mut().for_each(|x| *x = round_small(*x * per_unit) * lsb);
-            }
+            column.iter_mut().for_each(|x| *x = round(*x * per_unit) * lsb);
         });
     }
 }
 
-/// Below this many counts [`round_small`] rounds.
-const SMALL: f64 = 2_251_799_813_685_248.0;
-
-/// The nearest whole number, halves away from zero, of a number below 2⁵¹: without a call or a branch, so that several
-/// samples are rounded at once.
+/// The nearest whole number, halves away from zero, without a branch or a comparison, so that several samples are
+/// rounded at once: what is added is the greatest number below a half, which takes a half itself to the next whole
+/// number and nothing below it.
 #[inline(always)]
-fn round_small(x: f64) -> f64 {
-    /// 2⁵²: a sum with it has no digits behind the point.
-    const NO_FRACTION: f64 = 4_503_599_627_370_496.0;
-    let size = x.abs();
-    let even = (size + NO_FRACTION) - NO_FRACTION;
-    let half = if size - even >= 0.5 { 1.0 } else { 0.0 };
-    (even + half).copysign(x)
+fn round(x: f64) -> f64 {
+    (x + 0.499_999_999_999_999_94_f64.copysign(x)).trunc()
 }
 
 #[cfg(test)]
@@ -66,12 +54,26 @@ mod tests {
 
     proptest! {
         #[test]
-        fn many_at_once_are_rounded_as_one_alone(x in -SMALL..SMALL, k in -1_000_000i32..1_000_000) {
-            prop_assert_eq!(round_small(x), libm::round(x));
+        fn many_at_once_are_rounded_as_one_alone(x in -1e16..1e16, k in -1_000_000i32..1_000_000) {
+            prop_assert_eq!(round(x), libm::round(x));
             let half = f64::from(k) + 0.5;
-            for x in [half, half.next_up(), half.next_down(), f64::from(k), x / SMALL] {
-                prop_assert_eq!(round_small(x), libm::round(x), "{}", x);
+            for x in [half, half.next_up(), half.next_down(), f64::from(k), x * 1e-16, x * 1e-10, x * 1e280] {
+                prop_assert_eq!(round(x), libm::round(x), "{}", x);
             }
         }
+    }
+
+    #[test]
+    fn halves_go_away_from_zero_up_to_where_a_double_has_none() {
+        let half = 0.5f64;
+        let last = 4_503_599_627_370_495.5;
+        for x in
+            [half, half.next_down(), half.next_up(), last, f64::from_bits(last.to_bits() - 1), 9e15, f64::MAX]
+        {
+            for x in [x, -x] {
+                assert_eq!(round(x), libm::round(x), "{x}");
+            }
+        }
+        assert!(round(f64::NAN).is_nan() && round(f64::NEG_INFINITY) == f64::NEG_INFINITY);
     }
 }

@@ -5,6 +5,7 @@
 //! 54, 1966). Averages are made from those of half the length, so that a sensor of any rate takes a few numbers of memory
 //! however long it is watched. Of n differences of neighbours the deviation has a standard error of about `σ/√(2n)`.
 
+use crate::motion::Wants;
 use crate::player::{BLOCK, Player};
 use crate::scene::Plan;
 use crate::sensor::{BIAS_INSTABILITY, CORRELATION_TIME, is_flicker};
@@ -48,7 +49,7 @@ pub fn run(plan: &Plan, effort: Effort) -> Vec<Point> {
     let end = plan.duration.max(SimTime(effort.0 * NANOS));
     let mut watched: Vec<[Octaves; 3]> = plan.sensors.iter().map(|_| Default::default()).collect();
     let mut player = Player::new(plan, end, BLOCK);
-    while let Some(columns) = player.play_columns() {
+    while let Some(columns) = player.play_columns(Wants::NONE) {
         for (octaves, block) in watched.iter_mut().zip(columns.sensors()) {
             for (axis, octaves) in octaves.iter_mut().enumerate() {
                 let pairs = block.reading[axis].iter().zip(&block.truth[axis]);

@@ -8,6 +8,7 @@ mod cores;
 
 pub use cores::Cores;
 
+use crate::motion::Wants;
 use crate::os;
 use crate::player::{BLOCK, Player};
 use crate::random::{self, Normals};
@@ -79,7 +80,7 @@ pub fn run(plan: &Plan, effort: Effort, now: &dyn Fn() -> Duration) -> Cost {
         for (best, left_out) in best.iter_mut().zip(&left_out) {
             let mut player = Player::without(plan, end, BLOCK, left_out);
             let start = now();
-            while let Some(columns) = player.play_columns() {
+            while let Some(columns) = player.play_columns(Wants::NONE) {
                 black_box(columns);
             }
             *best = (*best).min(now().saturating_sub(start));

@@ -47,7 +47,7 @@ fn play(scene: &str, into: &Path) -> f64 {
     let lsb = lsb(&sensor.values, sensor.kind).expect("counts");
     let mut file = BufWriter::new(File::create(into).expect("a file"));
     let mut player = Player::new(&plan, plan.duration, BLOCK);
-    while let Some(columns) = player.play_columns() {
+    while let Some(columns) = player.play_columns(ratetable::motion::Wants::NONE) {
         let [x, y, z] = &columns.sensor(0).reading;
         for ((x, y), z) in x.iter().zip(y).zip(z) {
             for reading in [x, y, z] {

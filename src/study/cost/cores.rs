@@ -1,5 +1,6 @@
 //! How much faster several runs of a scene are made by all processors together than by one.
 
+use crate::motion::Wants;
 use crate::parallel;
 use crate::player::{BLOCK, Player};
 use crate::scene::Plan;
@@ -39,7 +40,7 @@ pub(super) fn run(
             let start = now();
             parallel::map(*threads, runs, &|_, _| (), |_| {
                 let mut player = Player::new(plan, end, BLOCK);
-                while let Some(columns) = player.play_columns() {
+                while let Some(columns) = player.play_columns(Wants::NONE) {
                     black_box(columns);
                 }
             });

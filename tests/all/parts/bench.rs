@@ -21,7 +21,7 @@ fn play(plan: &Plan, terms: &[&str]) -> Samples {
     let without: Vec<_> = TERMS.iter().map(|term| term.name).filter(|name| !terms.contains(name)).collect();
     let mut player = Player::without(plan, plan.duration, BLOCK, &without);
     let mut samples = Vec::new();
-    while let Some(columns) = player.play_columns() {
+    while let Some(columns) = player.play_columns(ratetable::motion::Wants::NONE) {
         let block = columns.sensor(0);
         let of = |column: &[Vec<f64>; 3], i: usize| [0, 1, 2].map(|axis: usize| column[axis][i]);
         samples
