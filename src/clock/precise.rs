@@ -29,6 +29,12 @@ impl<C: Clock> Precise<C> {
         self.margin
     }
 
+    /// Sleeps until `wake`, in a wait of `wait` ns, and learns from when it ends.
+    fn sleep_and_learn(&mut self, wake: i64, wait: i64) {
+        self.sleep_until(wake);
+        self.margin.learn(self.slept - wake, wait);
+    }
+
     /// The wrapped clock.
     pub fn inner(&self) -> &C {
         &self.clock
@@ -56,12 +62,12 @@ impl<C: Clock> Clock for Precise<C> {
 
     fn wait_until(&mut self, t: i64) {
         let now = self.clock.now();
-        let wake = t - self.margin.of_wait(t - now);
+        let wait = t - now;
+        let wake = t - self.margin.of_wait(wait);
         if wake > now {
-            self.sleep_until(wake);
-            self.margin.learn(self.slept - wake);
+            self.sleep_and_learn(wake, wait);
         } else if now - self.slept > AWAKE {
-            self.sleep_until(now + REST);
+            self.sleep_and_learn(now + REST, REST);
         }
         self.clock.spin_until(t);
     }
