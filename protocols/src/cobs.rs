@@ -32,8 +32,10 @@ pub fn encode(data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
     if out.len() < needed {
         return Err(Error::BufferTooSmall { needed });
     }
-    if data.len() < 254 {
-        return Ok(encode_short(data, out));
+    if data.len() <= SHORT {
+        out[1..=data.len()].copy_from_slice(data);
+        stuff(&mut out[..=data.len()]);
+        return Ok(data.len() + 1);
     }
     let (mut code_at, mut len, mut code) = (0, 1, 1);
     for (i, &byte) in data.iter().enumerate() {
@@ -52,22 +54,26 @@ pub fn encode(data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
     Ok(len)
 }
 
-/// Fewer than 254 bytes, whose runs are never full: they move on by one place as they are, and each zero becomes the
-/// length of the run behind it.
-fn encode_short(data: &[u8], out: &mut [u8]) -> usize {
-    out[1..=data.len()].copy_from_slice(data);
-    let mut code_at = 0;
-    for (i, word) in data.chunks(8).enumerate() {
-        let mut zeros = zero_bytes(word);
+/// Bytes whose runs are never full.
+const SHORT: usize = 253;
+
+/// Encodes in place what lies behind the first byte, at most [`SHORT`] bytes: each zero becomes the length of the run
+/// behind it.
+pub(crate) fn stuff(out: &mut [u8]) {
+    debug_assert!((1..=SHORT + 1).contains(&out.len()));
+    let (mut code_at, mut at) = (0, 1);
+    while at < out.len() {
+        let end = out.len().min(at + 8);
+        let mut zeros = zero_bytes(&out[at..end]);
         while zeros != 0 {
-            let at = 1 + 8 * i + (zeros.trailing_zeros() / 8) as usize;
-            out[code_at] = (at - code_at) as u8;
-            code_at = at;
+            let zero_at = at + (zeros.trailing_zeros() / 8) as usize;
+            out[code_at] = (zero_at - code_at) as u8;
+            code_at = zero_at;
             zeros &= zeros - 1;
         }
+        at = end;
     }
-    out[code_at] = (data.len() + 1 - code_at) as u8;
-    data.len() + 1
+    out[code_at] = (out.len() - code_at) as u8;
 }
 
 /// One bit, the highest, in each byte of a word that stands for a zero among up to eight bytes, the first lowest.

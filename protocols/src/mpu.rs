@@ -146,23 +146,21 @@ pub struct Received {
 /// # Errors
 /// [`Error::BufferTooSmall`] if `out` cannot hold it; [`MAX_LEN`] bytes always can.
 pub fn encode(seq: u8, t_us: u32, packet: &Packet, out: &mut [u8]) -> Result<usize, Error> {
-    let mut body = [0; MAX_BODY_LEN];
-    bytes::put_le(&mut body, field::TYPE, packet.kind());
-    bytes::put_le(&mut body, field::SEQ, seq);
-    bytes::put_le(&mut body, field::T_US, t_us);
     let crc_at = HEADER_LEN + packet.buffer_len();
+    let len = crc_at + CRC_LEN;
+    let needed = cobs::max_encoded_len(len) + 1;
+    let out = out.get_mut(..needed).ok_or(Error::BufferTooSmall { needed })?;
+    // The body lies where it becomes stuffed: every one is short, so that one byte before it is enough.
+    let body = &mut out[1..=len];
+    bytes::put_le(body, field::TYPE, packet.kind());
+    bytes::put_le(body, field::SEQ, seq);
+    bytes::put_le(body, field::T_US, t_us);
     packet.emit(&mut body[HEADER_LEN..crc_at])?;
     let crc = CRC.of(&body[..crc_at]);
-    bytes::put_le(&mut body, crc_at..crc_at + CRC_LEN, crc);
-
-    let body = &body[..crc_at + CRC_LEN];
-    let needed = cobs::max_encoded_len(body.len()) + 1;
-    if out.len() < needed {
-        return Err(Error::BufferTooSmall { needed });
-    }
-    let len = cobs::encode(body, out)?;
-    out[len] = 0;
-    Ok(len + 1)
+    bytes::put_le(body, crc_at..len, crc);
+    cobs::stuff(&mut out[..=len]);
+    out[len + 1] = 0;
+    Ok(needed)
 }
 
 /// Reads one packet, its closing zero left out.

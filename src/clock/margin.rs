@@ -23,7 +23,7 @@ pub enum Policy {
 pub struct Margin {
     policy: Policy,
     ns: f64,
-    /// The median of the lateness, tracked likewise: a shorter wait is over before a sleep of it would end.
+    /// The median of the lateness, ns, tracked likewise.
     usual: f64,
 }
 
@@ -52,13 +52,14 @@ impl Margin {
     }
 
     /// How much of a wait of `ns` to spin: the margin, but at most three quarters, so that a real-time thread leaves
-    /// the rest to others. (The kernel stops real-time threads altogether at 95 % of a second, for 50 ms.) All of a wait
-    /// that a sleep would surely miss.
+    /// the rest to others. (The kernel stops real-time threads altogether at 95 % of a second, for 50 ms.) All of it
+    /// where a sleep of a quarter would usually end too late.
     pub fn of_wait(&self, ns: i64) -> i64 {
-        if self.policy == Policy::Adaptive && (ns as f64) < self.usual {
+        let most = ns / 4 * 3;
+        if self.policy == Policy::Adaptive && most < self.usual as i64 {
             return ns;
         }
-        self.ns().min(ns / 4 * 3)
+        self.ns().min(most)
     }
 
     /// Learns from a sleep that ended this late in a wait of `wait`, both ns.

@@ -12,6 +12,12 @@ fn waits<C: Clock>(clock: &mut C, period: i64, ticks: i64) -> Vec<i64> {
         .collect()
 }
 
+/// Waits for so many ticks of `period` ns from now on.
+fn waits_from<C: Clock>(clock: &mut C, period: i64, ticks: i64) {
+    let start = clock.now();
+    (1..=ticks).for_each(|k| clock.wait_until(start + k * period));
+}
+
 #[test]
 fn a_virtual_clock_jumps_and_never_goes_back() {
     let mut clock = VirtualClock::waking_late([0, 7]);
@@ -60,17 +66,21 @@ fn the_margin_comes_to_cover_all_but_a_share_of_the_wakes_that_grows_with_the_ra
 }
 
 #[test]
-fn a_wait_that_a_sleep_would_miss_is_spun_and_others_go_on_sleeping() {
+fn waits_that_a_sleep_would_miss_are_spun_with_rests_and_longer_ones_are_slept_again() {
     let mut clock = Precise::new(VirtualClock::waking_late([40_000]), Policy::Adaptive);
     waits(&mut clock, PERIOD, 1_000);
-    let (sleeps, start) = (clock.inner().sleeps, clock.now());
-    for k in 1..=100 {
-        clock.wait_until(start + k * 31_250);
-        assert_eq!(clock.now(), start + k * 31_250, "on time");
-    }
-    assert_eq!(clock.inner().sleeps, sleeps);
-    clock.wait_until(clock.now() + PERIOD);
-    assert_eq!(clock.inner().sleeps, sleeps + 1);
+    let (spun, start, period) = (clock.inner().spun, clock.now(), 31_250);
+    let in_time = (1..=32_000).filter(|k| {
+        clock.wait_until(start + k * period);
+        clock.now() == start + k * period
+    });
+    let in_time = in_time.count() as f64 / 32_000.0;
+    let awake = (clock.inner().spun - spun) as f64 / (clock.now() - start) as f64;
+    assert!(in_time > 0.6, "{in_time} of the waits end on time");
+    assert!((0.6..0.75).contains(&awake), "{awake} of the time is spun");
+    let sleeps = clock.inner().sleeps;
+    waits_from(&mut clock, PERIOD, 100);
+    assert_eq!(clock.inner().sleeps, sleeps + 100);
 }
 
 #[test]
