@@ -55,6 +55,7 @@ fn main() {
     let (slice, turns) = if given("--bench") { (SLICE, 20) } else { (SimTime(5_000_000), 1) };
     let policies = [
         ("bare sleep", Policy::Fixed(0)),
+        ("20 µs", Policy::Fixed(20_000)),
         ("40 µs", Policy::Fixed(40_000)),
         ("60 µs", Policy::Fixed(60_000)),
         ("adaptive", Policy::Adaptive),
@@ -66,8 +67,10 @@ fn main() {
         late: Times::new(),
         used: Duration::ZERO,
     };
-    let mut trials: Vec<_> =
-        [1000, 8000].iter().flat_map(|&hz| policies.map(|policy| trial(Rate::hz(hz), policy))).collect();
+    let mut trials: Vec<_> = [1000, 8000, 32_000]
+        .iter()
+        .flat_map(|&hz| policies.map(|policy| trial(Rate::hz(hz), policy)))
+        .collect();
     for _ in 0..turns {
         trials.iter_mut().for_each(|trial| trial.slice(slice));
     }

@@ -47,6 +47,7 @@ mod producer;
 mod producing;
 mod queue;
 mod replies;
+mod ring;
 #[cfg(test)]
 mod session_tests;
 mod settling;
@@ -75,4 +76,4 @@ pub use outcome::Outcome;
 pub use pace::Speed;
 pub use watch::{Record, Watch, Watched};
 
-use shared::{Item, Shared};
+use shared::Shared;

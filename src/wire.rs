@@ -60,7 +60,7 @@ pub use fault::{PacketFault, PacketFaultKind};
 pub use faults::{Acts, Faults};
 pub use load::load;
 pub use mag_unit::MagUnit;
-pub use packet::{MAX_PACKET, Packet};
+pub use packet::{Head, MAX_PACKET, Packet};
 pub use protocol::{Protocol, check, encoder, warnings};
 
 use newest::Newest;

@@ -32,6 +32,11 @@ pub fn encode(data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
     if out.len() < needed {
         return Err(Error::BufferTooSmall { needed });
     }
+    if data.len() <= SHORT {
+        out[1..=data.len()].copy_from_slice(data);
+        stuff(&mut out[..=data.len()]);
+        return Ok(data.len() + 1);
+    }
     let (mut code_at, mut len, mut code) = (0, 1, 1);
     for (i, &byte) in data.iter().enumerate() {
         if byte != 0 {
@@ -47,6 +52,38 @@ pub fn encode(data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
     }
     out[code_at] = code;
     Ok(len)
+}
+
+/// Bytes whose runs are never full.
+const SHORT: usize = 253;
+
+/// Encodes in place what lies behind the first byte, at most [`SHORT`] bytes: each zero becomes the length of the run
+/// behind it.
+pub(crate) fn stuff(out: &mut [u8]) {
+    debug_assert!((1..=SHORT + 1).contains(&out.len()));
+    let (mut code_at, mut at) = (0, 1);
+    while at < out.len() {
+        let end = out.len().min(at + 8);
+        let mut zeros = zero_bytes(&out[at..end]);
+        while zeros != 0 {
+            let zero_at = at + (zeros.trailing_zeros() / 8) as usize;
+            out[code_at] = (zero_at - code_at) as u8;
+            code_at = zero_at;
+            zeros &= zeros - 1;
+        }
+        at = end;
+    }
+    out[code_at] = (out.len() - code_at) as u8;
+}
+
+/// One bit, the highest, in each byte of a word that stands for a zero among up to eight bytes, the first lowest.
+fn zero_bytes(bytes: &[u8]) -> u64 {
+    const LOW: u64 = 0x7f7f_7f7f_7f7f_7f7f;
+    let word = match bytes.try_into() {
+        Ok(bytes) => u64::from_le_bytes(bytes),
+        Err(_) => bytes.iter().rev().fold(u64::MAX, |word, &byte| word << 8 | u64::from(byte)),
+    };
+    !((word & LOW) + LOW | word | LOW)
 }
 
 /// Reads what [`encode`] wrote (without a closing zero) into `out` and returns the length.
@@ -109,6 +146,24 @@ mod tests {
             assert!(!out[..stuffed].contains(&0));
             assert_eq!(decode(&out[..stuffed], &mut back), Ok(len));
             assert_eq!(back[..len], plain[..len]);
+        }
+    }
+
+    #[test]
+    fn zeros_at_every_place_of_every_length_come_back() {
+        let (mut plain, mut out, mut back) = ([0; 300], [0; 310], [0; 310]);
+        for len in (0..40).chain(250..260) {
+            for pattern in 0..64_usize {
+                // Every byte a zero, none, every other, …
+                plain[..len].iter_mut().enumerate().for_each(|(i, byte)| {
+                    *byte = if pattern >> (i % 6) & 1 == 1 { 0 } else { (i % 255) as u8 + 1 };
+                });
+                let stuffed = encode(&plain[..len], &mut out).unwrap();
+                assert!(stuffed <= max_encoded_len(len));
+                assert!(!out[..stuffed].contains(&0));
+                assert_eq!(decode(&out[..stuffed], &mut back), Ok(len), "{len} {pattern}");
+                assert_eq!(back[..len], plain[..len]);
+            }
         }
     }
 

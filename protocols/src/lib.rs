@@ -27,6 +27,7 @@ mod message;
 
 pub mod betaflight;
 mod bytes;
+mod checksum;
 pub mod cobs;
 mod error;
 pub mod ilabs;

@@ -22,9 +22,10 @@
 //! # Ok::<(), ratetable_protocols::Error>(())
 //! ```
 
-use crc::{CRC_16_MCRF4XX, Crc, Table};
+use crc::CRC_16_MCRF4XX;
 
 use crate::bytes;
+use crate::checksum::Checksum;
 use crate::error::Error;
 
 pub mod attitude;
@@ -53,7 +54,7 @@ pub use decoder::Decoder;
 pub use dialect::{KNOWN, Known, known};
 pub use param_id::{PARAM_ID_LEN, param_id, param_name};
 
-static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_MCRF4XX);
+static CRC: Checksum<true> = Checksum::new(&CRC_16_MCRF4XX);
 
 /// Bytes of the longest payload of any message.
 pub const MAX_PAYLOAD_LEN: usize = 255;
@@ -191,11 +192,12 @@ macro_rules! messages {
                 }
             }
 
-            /// Writes the payload, extension fields included, at the front of `whole`.
-            fn emit(&self, whole: &mut [u8; MAX_PAYLOAD_LEN]) -> Result<(), Error> {
+            /// Writes the payload, extension fields included, at the front of `room`.
+            fn emit(&self, room: &mut [u8]) -> Result<(), Error> {
                 match self {
                     $(Self::$name(repr) => {
-                        let payload = &mut whole[..$module::LEN];
+                        let needed = $module::LEN;
+                        let payload = room.get_mut(..needed).ok_or(Error::BufferTooSmall { needed })?;
                         repr.emit(&mut $module::Payload::new_checked(payload)?);
                     })*
                 }
@@ -246,39 +248,47 @@ messages! {
 
 /// The checksum of the bytes after the first one of a packet.
 fn checksum(after_magic: &[u8], crc_extra: u8) -> u16 {
-    let mut digest = CRC.digest();
-    digest.update(after_magic);
-    digest.update(&[crc_extra]);
-    digest.finalize()
+    CRC.of_both(after_magic, &[crc_extra])
 }
 
-/// Writes one packet and returns its length.
+/// Writes one packet and returns its length. What is in `out` behind the packet may change too.
 ///
 /// # Errors
 /// [`Error::BufferTooSmall`] if `out` cannot hold it ([`MAX_LEN`] bytes always can),
 /// [`Error::Version`] if the id does not fit MAVLink 1.
 pub fn encode(header: &Header, message: &Message, out: &mut [u8]) -> Result<usize, Error> {
-    let mut payload = [0; MAX_PAYLOAD_LEN];
-    message.emit(&mut payload)?;
-    let payload = &payload[..message.buffer_len(header.version)];
-    let payload = match header.version {
-        Version::V1 => payload,
-        Version::V2 => cut_zeros(payload),
+    if out.len() < MAX_LEN {
+        return encode_into_little(header, message, out);
+    }
+    let start = header.version.header_len();
+    let (head, rest) = out.split_at_mut(start);
+    message.emit(rest)?;
+    let payload = &rest[..message.buffer_len(header.version)];
+    let len = match header.version {
+        Version::V1 => payload.len(),
+        Version::V2 => without_zeros(payload),
     };
-    let crc_at = header.version.header_len() + payload.len();
-    let needed = crc_at + CRC_LEN;
+    put_header(header, message.id(), len as u8, head)?;
+    let crc_at = start + len;
+    let crc = checksum(&out[1..crc_at], message.crc_extra());
+    bytes::put_le(out, crc_at..crc_at + CRC_LEN, crc);
+    Ok(crc_at + CRC_LEN)
+}
+
+/// The same where `out` may have room for this packet without its zeros, but not for every one.
+#[cold]
+fn encode_into_little(header: &Header, message: &Message, out: &mut [u8]) -> Result<usize, Error> {
+    let mut whole = [0; MAX_LEN];
+    let needed = encode(header, message, &mut whole)?;
     let packet = out.get_mut(..needed).ok_or(Error::BufferTooSmall { needed })?;
-    put_header(header, message.id(), payload.len() as u8, packet)?;
-    packet[header.version.header_len()..crc_at].copy_from_slice(payload);
-    let crc = checksum(&packet[1..crc_at], message.crc_extra());
-    bytes::put_le(packet, crc_at..needed, crc);
+    packet.copy_from_slice(&whole[..needed]);
     Ok(needed)
 }
 
-/// A payload without its trailing zeros, but at least its first byte.
-fn cut_zeros(payload: &[u8]) -> &[u8] {
+/// Bytes of a payload without its trailing zeros, at least one.
+fn without_zeros(payload: &[u8]) -> usize {
     let last = payload.iter().rposition(|&byte| byte != 0).unwrap_or(0);
-    &payload[..payload.len().min(last + 1)]
+    payload.len().min(last + 1)
 }
 
 /// Writes what comes before the payload.

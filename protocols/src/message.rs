@@ -53,6 +53,7 @@ macro_rules! payload {
 
             $(
                 $(#[$doc])*
+                #[inline]
                 pub fn $name(&self) -> $kind {
                     $crate::bytes::Field::$from(self.0.as_ref(), core::mem::offset_of!(Wire, $name))
                 }
@@ -62,6 +63,7 @@ macro_rules! payload {
         impl<T: AsRef<[u8]> + AsMut<[u8]>> Payload<T> {
             $(
                 #[doc = concat!("Sets [`", stringify!($name), "`](Self::", stringify!($name), ").")]
+                #[inline]
                 pub fn $set(&mut self, value: $kind) {
                     let at = core::mem::offset_of!(Wire, $name);
                     $crate::bytes::Field::$to(value, self.0.as_mut(), at);
@@ -98,6 +100,7 @@ macro_rules! payload {
             }
 
             /// Writes every field into a view.
+            #[inline]
             pub fn emit<T: AsRef<[u8]> + AsMut<[u8]>>(&self, payload: &mut Payload<T>) {
                 $(payload.$set(self.$name);)+
             }

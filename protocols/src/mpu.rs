@@ -21,8 +21,9 @@
 
 use core::ops::Range;
 
-use crc::{CRC_16_IBM_3740, Crc, Table};
+use crc::CRC_16_IBM_3740;
 
+use crate::checksum::Checksum;
 use crate::error::Error;
 use crate::{bytes, cobs};
 
@@ -37,7 +38,7 @@ pub mod registers;
 
 pub use decoder::Decoder;
 
-static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_IBM_3740);
+static CRC: Checksum<false> = Checksum::new(&CRC_16_IBM_3740);
 
 mod field {
     use super::Range;
@@ -145,23 +146,21 @@ pub struct Received {
 /// # Errors
 /// [`Error::BufferTooSmall`] if `out` cannot hold it; [`MAX_LEN`] bytes always can.
 pub fn encode(seq: u8, t_us: u32, packet: &Packet, out: &mut [u8]) -> Result<usize, Error> {
-    let mut body = [0; MAX_BODY_LEN];
-    bytes::put_le(&mut body, field::TYPE, packet.kind());
-    bytes::put_le(&mut body, field::SEQ, seq);
-    bytes::put_le(&mut body, field::T_US, t_us);
     let crc_at = HEADER_LEN + packet.buffer_len();
+    let len = crc_at + CRC_LEN;
+    let needed = cobs::max_encoded_len(len) + 1;
+    let out = out.get_mut(..needed).ok_or(Error::BufferTooSmall { needed })?;
+    // The body lies where it becomes stuffed: every one is short, so that one byte before it is enough.
+    let body = &mut out[1..=len];
+    bytes::put_le(body, field::TYPE, packet.kind());
+    bytes::put_le(body, field::SEQ, seq);
+    bytes::put_le(body, field::T_US, t_us);
     packet.emit(&mut body[HEADER_LEN..crc_at])?;
-    let crc = CRC.checksum(&body[..crc_at]);
-    bytes::put_le(&mut body, crc_at..crc_at + CRC_LEN, crc);
-
-    let body = &body[..crc_at + CRC_LEN];
-    let needed = cobs::max_encoded_len(body.len()) + 1;
-    if out.len() < needed {
-        return Err(Error::BufferTooSmall { needed });
-    }
-    let len = cobs::encode(body, out)?;
-    out[len] = 0;
-    Ok(len + 1)
+    let crc = CRC.of(&body[..crc_at]);
+    bytes::put_le(body, crc_at..len, crc);
+    cobs::stuff(&mut out[..=len]);
+    out[len + 1] = 0;
+    Ok(needed)
 }
 
 /// Reads one packet, its closing zero left out.
@@ -174,7 +173,7 @@ pub fn decode(stuffed: &[u8]) -> Result<Received, Error> {
     let len = cobs::decode(stuffed, &mut body).map_err(|_| Error::Malformed)?;
     let payload_len = len.checked_sub(HEADER_LEN + CRC_LEN).ok_or(Error::Malformed)?;
     let crc_at = HEADER_LEN + payload_len;
-    if CRC.checksum(&body[..crc_at]) != bytes::le::<u16>(&body, crc_at..len) {
+    if CRC.of(&body[..crc_at]) != bytes::le::<u16>(&body, crc_at..len) {
         return Err(Error::Checksum);
     }
     Ok(Received {

@@ -18,9 +18,10 @@
 
 use core::ops::Range;
 
-use crc::{CRC_16_KERMIT, Crc, Table};
+use crc::CRC_16_KERMIT;
 
 use crate::bytes;
+use crate::checksum::Checksum;
 use crate::error::Error;
 
 pub mod air_data;
@@ -32,7 +33,7 @@ pub mod quat;
 
 pub use decoder::Decoder;
 
-static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_KERMIT);
+static CRC: Checksum<true> = Checksum::new(&CRC_16_KERMIT);
 
 mod field {
     use super::Range;
@@ -160,7 +161,7 @@ pub fn encode(packet: &Packet, out: &mut [u8]) -> Result<usize, Error> {
     bytes::copy(&[id, class], &mut out[field::ID..field::LEN.start]);
     bytes::put_le(out, field::LEN, len as u16);
     packet.emit(&mut out[HEADER_LEN..crc_at])?;
-    let crc = CRC.checksum(&out[field::ID..crc_at]);
+    let crc = CRC.of(&out[field::ID..crc_at]);
     bytes::put_le(out, crc_at..crc_at + 2, crc);
     bytes::put_le(out, crc_at + 2..needed, END);
     Ok(needed)

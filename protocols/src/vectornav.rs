@@ -21,9 +21,10 @@
 //! # Ok::<(), ratetable_protocols::Error>(())
 //! ```
 
-use crc::{CRC_16_XMODEM, Crc, Table};
+use crc::CRC_16_XMODEM;
 
 use crate::bytes;
+use crate::checksum::Checksum;
 use crate::error::Error;
 
 pub mod ahrs;
@@ -35,7 +36,7 @@ pub mod navigation;
 
 pub use decoder::Decoder;
 
-static CRC: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_XMODEM);
+static CRC: Checksum<false> = Checksum::new(&CRC_16_XMODEM);
 
 /// The first byte of a binary packet.
 const SYNC: u8 = 0xfa;
@@ -133,6 +134,6 @@ fn payload<'b>(groups: &[u8], out: &'b mut [u8]) -> &'b mut [u8] {
 /// Writes the checksum.
 fn seal(out: &mut [u8]) {
     let crc_at = out.len() - CRC_LEN;
-    let crc = CRC.checksum(&out[1..crc_at]);
+    let crc = CRC.of(&out[1..crc_at]);
     bytes::put_be(out, crc_at..crc_at + CRC_LEN, crc);
 }

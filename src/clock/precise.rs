@@ -2,11 +2,18 @@
 
 use super::{Clock, Margin, Policy};
 
-/// After this long without a sleep, ns, it rests.
-const AWAKE: i64 = 20_000_000;
-/// Length of the rest, ns: a tenth of its time. A thread that is too late to sleep, packet after packet, then never
-/// reaches the kernel's limit for real-time threads (95 % of a second, then a gap of 50 ms).
-const REST: i64 = 2_000_000;
+/// How long it goes without a sleep, and then rests, ns.
+struct Rest {
+    after: i64,
+    length: i64,
+}
+
+/// Of a thread that is too late to sleep, packet after packet: it never reaches the kernel's limit for real-time threads
+/// (95 % of a second, then a gap of 50 ms).
+const BEHIND: Rest = Rest { after: 20_000_000, length: 2_000_000 };
+/// Of a thread that is in time, but whose waits are too short for a sleep: it takes 70 % of a core, and more than half of
+/// its waits end on time.
+const IN_TIME: Rest = Rest { after: 400_000, length: 150_000 };
 
 /// A clock whose waits end on time, as far as its sleeps allow.
 #[derive(Clone, Debug)]
@@ -27,6 +34,12 @@ impl<C: Clock> Precise<C> {
     /// The present margin.
     pub fn margin(&self) -> Margin {
         self.margin
+    }
+
+    /// Sleeps until `wake`, in a wait of `wait` ns, and learns from when it ends.
+    fn sleep_and_learn(&mut self, wake: i64, wait: i64) {
+        self.sleep_until(wake);
+        self.margin.learn(self.slept - wake, wait);
     }
 
     /// The wrapped clock.
@@ -56,12 +69,15 @@ impl<C: Clock> Clock for Precise<C> {
 
     fn wait_until(&mut self, t: i64) {
         let now = self.clock.now();
-        let wake = t - self.margin.of_wait(t - now);
+        let wait = t - now;
+        let wake = t - self.margin.of_wait(wait);
         if wake > now {
-            self.sleep_until(wake);
-            self.margin.learn(self.slept - wake);
-        } else if now - self.slept > AWAKE {
-            self.sleep_until(now + REST);
+            self.sleep_and_learn(wake, wait);
+        } else {
+            let Rest { after, length } = if wait > 0 { IN_TIME } else { BEHIND };
+            if now - self.slept > after {
+                self.sleep_and_learn(now + length, length);
+            }
         }
         self.clock.spin_until(t);
     }

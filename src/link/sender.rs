@@ -78,6 +78,20 @@ impl Sender {
         Sent::Done
     }
 
+    /// Whether [`send_all`](Self::send_all) would only put so many bytes with others that are to be written at once.
+    #[inline]
+    pub fn gathers(&self, count: usize) -> bool {
+        self.carry.gather != Gather::Never && self.carry.fits(count)
+    }
+
+    /// Puts a packet with others, which the link [`gathers`](Self::gathers); otherwise does nothing.
+    #[inline]
+    pub fn gather(&mut self, packet: &[u8]) {
+        if self.gathers(packet.len()) {
+            self.carry.keep(packet);
+        }
+    }
+
     /// Sends a packet like [`send`](Self::send), but at most its first `count` bytes go out now. The rest waits for
     /// [`send_kept`](Self::send_kept) or the next packet. A link of datagrams or gathered blocks sends all of it.
     pub fn send_first(&mut self, packet: &[u8], count: usize) -> Sent {

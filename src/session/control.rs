@@ -20,7 +20,7 @@ use super::shared::TICK;
 use super::side::{Side, Waits};
 use super::talk::Talk;
 use super::watch::Watching;
-use super::{Event, Item, Job, Outcome, Progress, SessionError, Shared, Speed, budget, step};
+use super::{Event, Job, Outcome, Progress, SessionError, Shared, Speed, budget, ring, step};
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
 use crate::motion::Truth;
@@ -81,8 +81,8 @@ impl Control {
         let mut control = Control::open(job, absence).await?;
         control.open_ground(&mut outside).await?;
         control.outputs.iter().for_each(|output| output.introduce(&mut outside));
-        let (ring, consumer) = rtrb::RingBuffer::new(RING);
-        let mut producing = Producing::NotYet(ring);
+        let (inlet, outlet) = ring::ring(RING);
+        let mut producing = Producing::NotYet(inlet);
         // Packets that do not depend on the other side's answers are made during the wait.
         if control.talk.borrow().silent().is_none() {
             producing = control.start(producing);
@@ -95,7 +95,7 @@ impl Control {
         };
         if !matches!(here, Ok(true)) {
             control.shared.stop.store(true, Ordering::Relaxed);
-            drop(consumer);
+            drop(outlet);
             producing.abandon();
             control.talk.borrow_mut().leave();
             here?;
@@ -104,7 +104,7 @@ impl Control {
         control.compare_rates(&mut outside);
         let producing = control.start(producing);
         outside.tell(if control.job.rest.is_some() { Event::Still } else { Event::Started });
-        let pacer = control.pacer(consumer);
+        let pacer = control.pacer(outlet);
         let mut pacing = Pacing::start(pacer, control.job.cpu)?;
         control.talk.borrow_mut().pacing = Some(pacing.thread());
         control.attend(&mut pacing, &mut outside).await;
@@ -257,13 +257,13 @@ impl Control {
     }
 
     /// The pacing thread's work, with the links.
-    fn pacer(&mut self, ring: rtrb::Consumer<Item>) -> LivePacer {
+    fn pacer(&mut self, ring: ring::Outlet) -> LivePacer {
         let mut pace =
             Pace::new(Precise::new(self.clock, Policy::Adaptive), self.job.speed, self.shared.clone());
         pace.watching = self.job.watch.take().map(Watching::new);
         let mut talk = self.talk.borrow_mut();
         let lanes = self.outputs.iter().enumerate().map(|(i, it)| talk.lane(i, &it.output)).collect();
-        Pacer { pace, ring, lanes }
+        Pacer::new(pace, ring, lanes)
     }
 
     /// Reports progress until the pacing thread ends, or until the user, the command or a departed reader ends it.

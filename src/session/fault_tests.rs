@@ -80,7 +80,7 @@ impl Ran {
 
 fn run(scene: &str, speed: Speed) -> Ran {
     let (plan, shared) = (plan(scene), Arc::<Shared>::default());
-    let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+    let (ring, consumer) = ring::ring(1 << 16);
     let mut made = produce(&plan, &plan.outputs[..1], ring, &shared).remove(0);
     made.settle(plan.duration);
     let (sender, far) = memory(1 << 20);
@@ -215,7 +215,7 @@ fn faults_give_the_same_bytes_at_any_speed_as_resolved_and_beside_others() {
 fn what_was_done_ahead_of_time_is_not_told() {
     let scene = scene("mpu", &fault("drop", "share = \"100 %\""));
     let (plan, shared) = (plan(&scene), Arc::<Shared>::default());
-    let (ring, _consumer) = rtrb::RingBuffer::new(1 << 16);
+    let (ring, _consumer) = ring::ring(1 << 16);
     let mut made = produce(&plan, &plan.outputs, ring, &shared).remove(0);
     let fired = |made: &Made| made.fired(&plan.outputs[0]);
     assert_eq!(fired(&made), [""; 0], "nothing has gone out yet");
@@ -235,7 +235,7 @@ fn the_account_is_whole_wherever_a_run_with_faults_is_stopped() {
     let plan = plan(&scene("mavlink", &(every + &fault("stall", "") + &fault("split", ""))));
     for stop in [0, 150, 205, 400, 699, 701, 950].map(|ms| ms * MS) {
         let shared = Arc::<Shared>::default();
-        let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+        let (ring, consumer) = ring::ring(1 << 16);
         let made = produce(&plan, &plan.outputs, ring, &shared).remove(0);
         let (sender, far) = memory(1 << 20);
         let clock = Noting { now: 0, far, seen: Arc::default(), stop: Some((stop, shared.clone())) };
@@ -255,7 +255,7 @@ fn the_pacing_thread_allocates_nothing_with_faults_either() {
     let every =
         ["drop", "corrupt", "duplicate", "reorder", "stall", "split"].map(|kind| fault(kind, "")).concat();
     let (plan, shared) = (plan(&scene("mpu", &every)), Arc::<Shared>::default());
-    let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+    let (ring, consumer) = ring::ring(1 << 16);
     produce(&plan, &plan.outputs, ring, &shared);
     let (sender, _far) = memory(1 << 20);
     let mut pacer = pacer(VirtualClock::default(), consumer, sender, Speed::Times(1.0), &shared);

@@ -3,11 +3,12 @@
 //! Every packet from the ring ends as sent, dropped or left, and is counted once. A link sends nothing out of
 //! order, and packets wait here only as the output's policy says. The lane allocates nothing and takes no lock.
 
+use super::Shared;
 use super::account::Account;
 use super::feed::Made;
 use super::left::Left;
 use super::pace::{Pace, Speed};
-use super::queue::{Due, Queue};
+use super::queue::{self, Due, Queue};
 use super::replies::{Replied, Replies};
 use super::step::{self, Step, Turn};
 use super::tally::{SensorTally, Tally};
@@ -15,7 +16,7 @@ use crate::clock::Clock;
 use crate::link::{Sender, Sent};
 use crate::scene::Overload;
 use crate::sensor::Kinds;
-use crate::wire::Packet;
+use crate::wire::{Head, Packet};
 use std::io::ErrorKind;
 use tokio::time::Instant;
 
@@ -83,55 +84,77 @@ impl Lane {
     }
 
     /// Sends a due packet, or applies the overload policy to it.
-    pub(super) fn deliver<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) -> Delivery {
+    pub(super) fn deliver<C: Clock>(&mut self, packet: &Packet, due: i64, pace: &mut Pace<C>) -> Delivery {
         match (pace.speed, self.policy) {
-            _ if self.end.is_some() => self.lose(&it.packet, pace),
-            (Speed::Max, _) => self.deliver_all(it, pace),
-            (_, Overload::DropNewest) => self.deliver_now(it, pace),
-            (_, Overload::DropOldest) => self.deliver_in_turn(it, pace),
-            (_, Overload::Stretch) => return self.deliver_late(it, pace),
+            _ if self.end.is_some() => self.lose(packet, pace),
+            (Speed::Max, _) => self.deliver_all(packet, due, pace),
+            (_, Overload::DropNewest) => self.deliver_now(packet, due, pace),
+            (_, Overload::DropOldest) => self.deliver_in_turn(packet, due, pace),
+            (_, Overload::Stretch) => return self.deliver_late(packet, due, pace),
         }
         Delivery::Over
     }
 
-    fn deliver_now<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) {
-        if self.attempt(&it, pace) != Sent::Done {
-            self.lose(&it.packet, pace);
+    /// Whether its link only puts a packet with others, and nothing else is to be done with it.
+    pub(super) fn gathers(&self, head: &Head) -> bool {
+        let plain = self.step.is_none() && self.queue.is_empty() && self.end.is_none();
+        plain && head.piece == 0 && !head.is_nothing() && self.sender.gathers(head.size())
+    }
+
+    /// Puts a packet with others, which its link [`gathers`](Lane::gathers), and counts it as sent at `now`.
+    pub(super) fn gather(&mut self, packet: &Packet, now: i64, shared: &Shared) {
+        self.sender.gather(packet.bytes());
+        self.tally.gathered(packet, now);
+        if shared.scene_time(packet.due).is_some() {
+            self.tally.in_scene(now, true);
+        }
+        let lost = self.tally.replaced(packet);
+        shared.dropped.add(lost);
+    }
+
+    /// The packets gathered since the last call are sent at `now`.
+    pub(super) fn gathered(&mut self, now: i64, shared: &Shared) {
+        shared.packets.add(self.tally.gathered_by(now));
+    }
+
+    fn deliver_now<C: Clock>(&mut self, packet: &Packet, due: i64, pace: &mut Pace<C>) {
+        if self.attempt(packet, due, pace) != Sent::Done {
+            self.lose(packet, pace);
         }
     }
 
     /// Unpaced: the link gets all the time it needs.
-    fn deliver_all<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) {
-        match self.attempt(&it, pace) {
+    fn deliver_all<C: Clock>(&mut self, packet: &Packet, due: i64, pace: &mut Pace<C>) {
+        match self.attempt(packet, due, pace) {
             Sent::Done => {}
-            Sent::Gone(_) => self.lose(&it.packet, pace),
+            Sent::Gone(_) => self.lose(packet, pace),
             // Everything stopped meanwhile.
-            Sent::Full | Sent::Away => self.queue.push(it),
+            Sent::Full | Sent::Away => self.queue.push(Due { packet: *packet, due }),
         }
     }
 
     /// Queues the packet behind those that wait; a full queue drops its oldest.
-    fn deliver_in_turn<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) {
+    fn deliver_in_turn<C: Clock>(&mut self, packet: &Packet, due: i64, pace: &mut Pace<C>) {
         self.catch_up(pace);
         if self.queue.is_empty() {
-            match self.attempt(&it, pace) {
+            match self.attempt(packet, due, pace) {
                 Sent::Done => return,
                 Sent::Full => {}
-                Sent::Away | Sent::Gone(_) => return self.lose(&it.packet, pace),
+                Sent::Away | Sent::Gone(_) => return self.lose(packet, pace),
             }
         }
         if let Some(oldest) = self.queue.make_room() {
             self.lose(&oldest.packet, pace);
         }
-        self.queue.push(it);
+        self.queue.push(Due { packet: *packet, due });
     }
 
     /// Loses nothing: a packet that the link does not take becomes due when it does.
-    fn deliver_late<C: Clock>(&mut self, it: Due, pace: &mut Pace<C>) -> Delivery {
-        match self.attempt(&it, pace) {
+    fn deliver_late<C: Clock>(&mut self, packet: &Packet, due: i64, pace: &mut Pace<C>) -> Delivery {
+        match self.attempt(packet, due, pace) {
             Sent::Done => {}
-            Sent::Gone(_) => self.lose(&it.packet, pace),
-            Sent::Full | Sent::Away if pace.shared.stopped() => self.queue.push(it),
+            Sent::Gone(_) => self.lose(packet, pace),
+            Sent::Full | Sent::Away if pace.shared.stopped() => self.queue.push(Due { packet: *packet, due }),
             Sent::Full | Sent::Away => return Delivery::Again,
         }
         Delivery::Over
@@ -143,7 +166,7 @@ impl Lane {
             return;
         }
         while let Some(it) = self.queue.oldest() {
-            match self.attempt(&it, pace) {
+            match self.attempt(&it.packet, it.due, pace) {
                 Sent::Full => return,
                 Sent::Done => {}
                 // A port that comes back gets current packets, not those due before it left.
@@ -154,21 +177,21 @@ impl Lane {
     }
 
     /// Writes a packet and counts it if the link took it.
-    fn attempt<C: Clock>(&mut self, it: &Due, pace: &mut Pace<C>) -> Sent {
+    fn attempt<C: Clock>(&mut self, packet: &Packet, due: i64, pace: &mut Pace<C>) -> Sent {
         let taken = self.step.as_ref().map_or(0, Step::taken);
         let before = pace.clock.now();
-        let sent = self.write(&it.packet, pace);
+        let sent = self.write(packet, pace);
         match sent {
             Sent::Done => {
-                self.tally.sent(&it.packet, before, it.late(before), pace.clock.now() - before);
-                if pace.shared.scene_time(it.packet.due).is_some() {
-                    self.tally.in_scene(before, self.step.is_none() || step::is_answered(it.packet.carries));
+                self.tally.sent(packet, before, queue::late(due, before), pace.clock.now() - before);
+                if pace.shared.scene_time(packet.due).is_some() {
+                    self.tally.in_scene(before, self.step.is_none() || step::is_answered(packet.carries));
                 }
                 pace.shared.packets.add(1);
-                self.forget_replaced(&it.packet, pace);
-                pace.record_sent(&it.packet, it.due, before);
+                self.forget_replaced(packet, pace);
+                pace.record_sent(packet, due, before);
                 if let Some(step) = &mut self.step {
-                    step.sent(&it.packet, taken, before);
+                    step.sent(packet, taken, before);
                 }
             }
             Sent::Away => self.tally.gaps.begin(before),

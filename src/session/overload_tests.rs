@@ -86,7 +86,7 @@ fn run_until(
     act: impl FnMut(i64, &mut [Reader]) + Send,
 ) -> Ran {
     let plan = plan(scene);
-    let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+    let (ring, consumer) = ring::ring(1 << 16);
     let outputs: Vec<_> = policies.iter().map(|_| Output::to("jsonl@pty".parse().unwrap())).collect();
     let made = produce(&plan, &outputs, ring, shared);
     let (lanes, readers): (Vec<Lane>, Vec<Reader>) = policies
@@ -97,7 +97,7 @@ fn run_until(
     let readers = Arc::new(Mutex::new(readers));
     let world = World { now: 0, readers: readers.clone(), act };
     let pace = Pace::new(world, Speed::Times(1.0), shared.clone());
-    let mut pacer = Pacer { pace, ring: consumer, lanes };
+    let mut pacer = Pacer::new(pace, consumer, lanes);
     pacer.run(0);
     pacer.give_up();
     let Pacer { pace: Pace { clock, stretched, .. }, mut lanes, .. } = pacer;
@@ -269,7 +269,7 @@ fn a_clock_that_steps_makes_packets_late_and_each_is_told() {
     let (scene, step) = (plan(SCENE), 200 * MS);
     for (policy, capacity) in POLICIES.iter().flat_map(|policy| [(*policy, 1 << 20), (*policy, 4000)]) {
         let shared = Arc::<Shared>::default();
-        let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+        let (ring, consumer) = ring::ring(1 << 16);
         let made = produce(&scene, &[Output::to("jsonl@pty".parse().unwrap())], ring, &shared).remove(0);
         let (sender, far) = memory(capacity);
         let readers = Arc::new(Mutex::new(vec![Reader { far, received: Vec::new() }]));
@@ -277,7 +277,7 @@ fn a_clock_that_steps_makes_packets_late_and_each_is_told() {
         // After half a second the machine sleeps for 200 ms: nothing happens meanwhile.
         let clock = Stepping { world, at: 500 * MS, step };
         let pace = Pace::new(clock, Speed::Times(1.0), shared.clone());
-        let mut pacer = Pacer { pace, ring: consumer, lanes: vec![Lane::new(sender, policy)] };
+        let mut pacer = Pacer::new(pace, consumer, vec![Lane::new(sender, policy)]);
         pacer.run(0);
         pacer.give_up();
         let Lane { tally, left, .. } = &pacer.lanes[0];
@@ -342,7 +342,7 @@ fn one_stalling_reader_neither_delays_nor_drops_the_packets_of_the_others() {
 fn no_policy_allocates_in_the_pacing_thread() {
     for policy in POLICIES {
         let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
-        let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+        let (ring, consumer) = ring::ring(1 << 16);
         produce(&plan, &[Output::to("jsonl@pty".parse().unwrap())], ring, &shared);
         let (sender, far) = memory(1 << 20);
         let readers = Arc::new(Mutex::new(vec![Reader { far, received: Vec::new() }]));
@@ -352,7 +352,7 @@ fn no_policy_allocates_in_the_pacing_thread() {
         };
         let world = World { now: 0, readers, act };
         let pace = Pace::new(world, Speed::Times(1.0), shared.clone());
-        let mut pacer = Pacer { pace, ring: consumer, lanes: vec![Lane::new(sender, policy)] };
+        let mut pacer = Pacer::new(pace, consumer, vec![Lane::new(sender, policy)]);
         let counted = allocation_counter::measure(|| pacer.run(0));
         assert!(pacer.lanes[0].tally.packets >= 600 && pacer.lanes[0].tally.gaps.count == 1);
         assert_eq!(counted.count_total, 0, "{policy:?}");

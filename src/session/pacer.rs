@@ -1,15 +1,14 @@
 //! The pacing thread: takes the next packet, waits until it is due and has its lane deliver it. Nothing else.
 
-use super::Item;
 use super::lane::{Delivery, Lane};
 use super::pace::{AT_ONCE, Pace, Speed};
-use super::queue::Due;
 use super::replies::Replied;
+use super::ring::{Item, Outlet};
 use super::step::Turn;
 use crate::clock::Clock;
 use crate::sensor::Kinds;
 use crate::time::SimTime;
-use rtrb::Consumer;
+use crate::wire::{Head, Packet};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -23,15 +22,19 @@ const SPARE: i64 = 2_000_000;
 const RETRY: i64 = 1_000_000;
 /// Wait for the producer when the ring is empty.
 const EMPTY: Duration = Duration::from_micros(50);
+/// The most packets that go to one link without a look at anything else.
+const GATHERED: usize = 64;
 /// At the end, waiting packets are given up when none has moved for this long, ns.
 const PATIENCE: i64 = 1_000_000_000;
 
 /// What the pacing thread owns.
 pub(super) struct Pacer<C> {
     pub pace: Pace<C>,
-    pub ring: Consumer<Item>,
+    pub ring: Outlet,
     /// One for each output.
     pub lanes: Vec<Lane>,
+    /// The packet that was taken last.
+    packet: Packet,
 }
 
 /// What the pacer needs to know of a packet that is still in the ring.
@@ -43,6 +46,10 @@ struct Next {
 }
 
 impl<C: Clock> Pacer<C> {
+    pub(super) fn new(pace: Pace<C>, ring: Outlet, lanes: Vec<Lane>) -> Pacer<C> {
+        Pacer { pace, ring, lanes, packet: Packet::BLANK }
+    }
+
     /// Sends everything until the ring ends or the run stops. Stream time 0 is at `start` (ns on its clock).
     pub(super) fn run(&mut self, start: i64) {
         self.pace.begin(start);
@@ -54,17 +61,20 @@ impl<C: Clock> Pacer<C> {
         while !self.pace.shared.stopped() && self.lanes.iter().any(Lane::is_open) {
             let replied = self.reply();
             let look_up = self.look_up();
+            if self.gather() {
+                continue;
+            }
             match self.ring.peek() {
-                Ok(Item { lane, packet }) => {
-                    let next = Next { lane: *lane, carries: packet.carries, t: packet.due };
+                Some(&Item { lane, head: Head { carries, due: t, .. } }) => {
+                    let next = Next { lane, carries, t };
                     if let Some(due) = self.comes_up(next, look_up, replied) {
                         self.send_next(due, replied);
                     }
                 }
-                Err(_) if self.pace.shared.all_made.load(Ordering::Acquire) && self.ring.is_empty() => {
+                None if self.pace.shared.all_made.load(Ordering::Acquire) && self.ring.is_empty() => {
                     return self.settle();
                 }
-                Err(_) => std::thread::sleep(EMPTY),
+                None => std::thread::sleep(EMPTY),
             }
         }
     }
@@ -137,7 +147,7 @@ impl<C: Clock> Pacer<C> {
     /// Waits until `due` and delivers the next packet.
     fn send_next(&mut self, due: i64, replied: Replied) {
         // The packet leaves the ring before the wait, so that nothing comes between the wait and the write.
-        let Ok(Item { lane, packet }) = self.ring.pop() else { return };
+        let Some(lane) = self.ring.take(&mut self.packet) else { return };
         if due != AT_ONCE {
             self.pace.clock.wait_until(due);
         }
@@ -145,30 +155,53 @@ impl<C: Clock> Pacer<C> {
             // A controller that waits for an answer waits longer than one that misses a sample.
             self.reply();
         }
-        if packet.is_nothing() {
-            self.lanes[lane].send_kept(packet.piece);
+        if self.packet.is_nothing() {
+            self.lanes[lane].send_kept(self.packet.piece);
         } else {
-            self.deliver(lane, Due { packet, due });
+            self.deliver(lane, due);
         }
-        self.pace.shared.stream_ns.store(packet.due.0, Ordering::Relaxed);
+        self.pace.shared.stream_ns.store(self.packet.due.0, Ordering::Relaxed);
     }
 
-    /// Has its lane deliver a packet. While the packet waits for its link, scene time stands still: everything
-    /// after it becomes due later.
-    fn deliver(&mut self, lane: usize, mut it: Due) {
-        let due = it.due;
-        if self.lanes[lane].deliver(it, &mut self.pace) == Delivery::Over {
+    /// Has its lane deliver the packet that was taken last. While it waits for its link, scene time stands still:
+    /// everything after it becomes due later.
+    fn deliver(&mut self, lane: usize, due: i64) {
+        if self.lanes[lane].deliver(&self.packet, due, &mut self.pace) == Delivery::Over {
             return;
         }
         let begun = self.pace.clock.now();
         loop {
             self.pace.wait(RETRY);
             self.catch_up();
-            it.due = due + (self.pace.clock.now() - begun);
-            if self.lanes[lane].deliver(it, &mut self.pace) == Delivery::Over {
-                return self.pace.shift(it.due - due, it.packet.due);
+            let by = self.pace.clock.now() - begun;
+            if self.lanes[lane].deliver(&self.packet, due + by, &mut self.pace) == Delivery::Over {
+                return self.pace.shift(by, self.packet.due);
             }
         }
+    }
+
+    /// At full speed: takes the next packets as long as their link only puts them with others, which needs neither a
+    /// clock nor a turn. Whether there were any.
+    fn gather(&mut self) -> bool {
+        if self.pace.speed.is_paced() || self.pace.watching.is_some() {
+            return false;
+        }
+        let Some(&Item { lane, head }) = self.ring.peek() else { return false };
+        if !self.lanes[lane].gathers(&head) {
+            return false;
+        }
+        let began = self.pace.clock.now();
+        for _ in 0..GATHERED {
+            match self.ring.peek() {
+                Some(next) if next.lane == lane && self.lanes[lane].gathers(&next.head) => {}
+                _ => break,
+            }
+            self.ring.take(&mut self.packet);
+            self.lanes[lane].gather(&self.packet, began, &self.pace.shared);
+        }
+        self.lanes[lane].gathered(self.pace.clock.now(), &self.pace.shared);
+        self.pace.shared.stream_ns.store(self.packet.due.0, Ordering::Relaxed);
+        true
     }
 
     fn catch_up(&mut self) {
@@ -210,8 +243,8 @@ impl<C: Clock> Pacer<C> {
     /// Counts packets in the ring and the queues as left: made, but neither sent nor dropped.
     pub(super) fn give_up(&mut self) {
         self.lanes.iter_mut().for_each(Lane::give_up);
-        while let Ok(item) = self.ring.pop() {
-            self.lanes[item.lane].left.add(&item.packet);
+        while let Some(lane) = self.ring.take(&mut self.packet) {
+            self.lanes[lane].left.add(&self.packet);
         }
     }
 }

@@ -1,12 +1,13 @@
 //! The producer thread: plays the plan, turns it into packets, and keeps the ring full.
 
+use super::Shared;
 use super::feed::Feed;
-use super::{Item, Shared};
+use super::ring::Inlet;
 use crate::motion::Truth;
 use crate::player::{BLOCK, Moment, Player};
 use crate::scene::Plan;
 use crate::time::SimTime;
-use rtrb::{Producer, PushError};
+use crate::wire::Packet;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -34,9 +35,11 @@ pub(super) struct Task<'a> {
 struct Stopped;
 
 /// Plays the task into the ring. Returns the feeds, which know what was made and hold the farewell.
-pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Producer<Item>, shared: &Shared) -> Vec<Feed> {
+pub(super) fn produce(task: Task<'_>, feeds: Vec<Feed>, ring: Inlet, shared: &Shared) -> Vec<Feed> {
     let follows = feeds.iter().any(Feed::follows);
-    let mut maker = Maker { feeds, follows, items: Vec::new(), start: SimTime::ZERO, ring, shared };
+    // A packet due between two ticks of one output must not wait behind a later one of another output.
+    let mixed = feeds.len() > 1 || feeds.iter().any(Feed::is_faulty);
+    let mut maker = Maker { feeds, follows, mixed, sorted: Vec::new(), start: SimTime::ZERO, ring, shared };
     // Stopping early is no failure: what was made is counted either way.
     let _ = maker.play(task);
     maker.end();
@@ -49,11 +52,13 @@ struct Maker<'a> {
     feeds: Vec<Feed>,
     /// Whether one makes what is asked for meanwhile, so that the scene too is made little ahead.
     follows: bool,
-    /// The items made last.
-    items: Vec<Item>,
+    /// Whether packets may be made in another order than that in which they are due.
+    mixed: bool,
+    /// Those made last, with the output of each, by their due times.
+    sorted: Vec<(usize, Packet)>,
     /// Stream time at which the present part began.
     start: SimTime,
-    ring: Producer<Item>,
+    ring: Inlet,
     shared: &'a Shared,
 }
 
@@ -96,7 +101,7 @@ impl Maker<'_> {
     /// Waits until sending comes close to `t`, or nothing is left to send.
     fn wait_for_lead(&self, t: SimTime) -> Result<(), Stopped> {
         let far = || t.0 - self.shared.stream_ns.load(Ordering::Relaxed) > LEAD;
-        while far() && self.ring.slots() < self.ring.buffer().capacity() {
+        while far() && !self.ring.is_empty() {
             if self.shared.stopped() {
                 return Err(Stopped);
             }
@@ -113,37 +118,35 @@ impl Maker<'_> {
         if self.follows {
             self.wait_for_lead(t)?;
         }
-        let moment = Moment { t, truth: &Truth { t, ..*truth }, readings };
-        let sent = self.shared.sent();
-        for (lane, feed) in self.feeds.iter_mut().enumerate() {
-            self.items.extend(feed.make(&moment, sent).iter().map(|&packet| Item { lane, packet }));
-        }
-        self.hand_over();
+        let truth = &Truth { t, ..*truth };
+        self.hand_over(|feed, sent| feed.make(&Moment { t, truth, readings }, sent));
         Ok(())
     }
 
     /// Releases what faults still hold.
     fn end(&mut self) {
-        for (lane, feed) in self.feeds.iter_mut().enumerate() {
-            self.items.extend(feed.end().iter().map(|&packet| Item { lane, packet }));
-        }
-        self.hand_over();
+        self.hand_over(|feed, _| feed.end());
     }
 
-    fn hand_over(&mut self) {
-        if self.feeds.len() > 1 || self.feeds.iter().any(Feed::is_faulty) {
-            // A packet due between two ticks of one output must not wait behind a later one of another output.
-            self.items.sort_by_key(|item| item.packet.due);
+    /// Passes on what each feed makes, given what has gone out.
+    fn hand_over(&mut self, make: impl Fn(&mut Feed, SimTime) -> &[Packet]) {
+        let (sent, ring, shared) = (self.shared.sent(), &mut self.ring, self.shared);
+        for (lane, feed) in self.feeds.iter_mut().enumerate() {
+            let packets = make(feed, sent);
+            match self.mixed {
+                true => self.sorted.extend(packets.iter().map(|packet| (lane, *packet))),
+                false => packets.iter().for_each(|packet| push(ring, lane, packet, shared)),
+            }
         }
-        self.items.drain(..).for_each(|item| push(&mut self.ring, item, self.shared));
+        self.sorted.sort_by_key(|(_, packet)| packet.due);
+        self.sorted.drain(..).for_each(|(lane, packet)| push(ring, lane, &packet, shared));
     }
 }
 
 /// Waits for room in the ring. After a stop, whoever counts what is left empties the ring; once nobody holds the
 /// ring any more, the packet is dropped.
-fn push(ring: &mut Producer<Item>, mut item: Item, shared: &Shared) {
-    while let Err(PushError::Full(back)) = ring.push(item) {
-        item = back;
+fn push(ring: &mut Inlet, lane: usize, packet: &Packet, shared: &Shared) {
+    while ring.push(lane, packet).is_err() {
         if shared.stopped() && ring.is_abandoned() {
             return;
         }

@@ -3,10 +3,10 @@
 use super::feed::Feed;
 use super::pacer::Pacer;
 use super::producer::{self, Task};
-use super::{Item, Job, Shared};
+use super::ring::Inlet;
+use super::{Job, Shared};
 use crate::clock::Clock;
 use crate::wire::dialogue::Peer;
-use rtrb::Producer;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::Receiver;
@@ -18,7 +18,7 @@ const LOOK: Duration = Duration::from_micros(100);
 
 /// The thread, or the ring that it will fill once it starts.
 pub(super) enum Producing {
-    NotYet(Producer<Item>),
+    NotYet(Inlet),
     Started(JoinHandle<Vec<Feed>>),
 }
 

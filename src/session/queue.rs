@@ -16,11 +16,9 @@ pub(super) struct Due {
     pub due: i64,
 }
 
-impl Due {
-    /// How late a write at `now` is, ns.
-    pub(super) fn late(&self, now: i64) -> i64 {
-        if self.due == AT_ONCE { 0 } else { now - self.due }
-    }
+/// How late a write at `now` of what was due at `due` is, ns.
+pub(super) fn late(due: i64, now: i64) -> i64 {
+    if due == AT_ONCE { 0 } else { now - due }
 }
 
 /// The waiting packets of one link, oldest first.

@@ -63,7 +63,7 @@ fn half_an_hour(plan: &Plan, protocol: Protocol) {
     let name = protocol.name();
     let shared = Arc::<Shared>::default();
     let outputs = [Output::to(format!("{name}@pty").parse().unwrap())];
-    let (ring, consumer) = rtrb::RingBuffer::new(8192);
+    let (ring, consumer) = ring::ring(8192);
     // The capacity of a pty: bytes that the other side does not read in time would be lost.
     let (sender, far) = memory(20_000);
     let (made, mut pacer) = thread::scope(|scope| {

@@ -1,21 +1,12 @@
 //! State that the threads of a run share.
 
 use crate::time::SimTime;
-use crate::wire::Packet;
 use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::time::Duration;
 
 /// Time between two looks at what a conversation has due.
 pub(super) const TICK: Duration = Duration::from_millis(10);
-
-/// A packet on its way to one of the outputs.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
-    /// Which output's.
-    pub lane: usize,
-    pub packet: Packet,
-}
 
 /// A value on cache lines of its own: a thread that reads it with every packet does not wait for writes beside it.
 #[derive(Debug, Default)]

@@ -144,7 +144,7 @@ fn live(
     let (talk, far) = letters(&plan, &shared, speed, capacity);
     let talk = Mutex::new(talk);
     let there = Mutex::new((far, Vec::<u8>::new()));
-    let (ring, consumer) = rtrb::RingBuffer::new(8192);
+    let (ring, consumer) = ring::ring(8192);
     let outputs = [output("csv@pty")];
     let mut lane = talk.lock().unwrap().lane(0, &outputs[0]);
     lane.step = lockstep.then(|| Step::new(talk.lock().unwrap().sides[0].counter()));
@@ -165,7 +165,7 @@ fn live(
             },
         };
         let pace = Pace::new(world, speed, shared.clone());
-        let mut pacer = Pacer { pace, ring: consumer, lanes: vec![lane] };
+        let mut pacer = Pacer::new(pace, consumer, vec![lane]);
         pacer.run(0);
         let end = pacer.pace.clock.now;
         // The rest of a packet that the link took in part.
@@ -394,14 +394,14 @@ fn the_pacing_thread_allocates_nothing_while_it_replies_and_keeps_step() {
     let mut lane = talk.lane(0, &output("csv@pty"));
     talk.hear(0, &[b'h'; 50], 0);
     let took = talk.sides[0].counter();
-    let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+    let (ring, consumer) = ring::ring(1 << 16);
     tests::produce(&plan, &[output("csv@pty")], ring, &shared);
     // Each packet gets its answer in the next millisecond.
     let (answers, sent) = (took.clone(), shared.clone());
     let world = World { now: 0, act: move |_| answers.store(sent.packets.get(), Ordering::Relaxed) };
     lane.step = Some(Step::new(took));
     let pace = Pace::new(world, Speed::Times(1.0), shared.clone());
-    let mut pacer = Pacer { pace, ring: consumer, lanes: vec![lane] };
+    let mut pacer = Pacer::new(pace, consumer, vec![lane]);
     let counted = allocation_counter::measure(|| pacer.run(0));
     assert!(pacer.lanes[0].tally.packets > 2000);
     assert_eq!((pacer.lanes[0].tally.replies, counted.count_total), (50, 0));

@@ -88,6 +88,8 @@ pub(super) struct Tally {
     first: i64,
     last: i64,
     last_bytes: u64,
+    /// Those of the sent that were put with others since the clock was read.
+    gathered: u64,
 }
 
 impl Tally {
@@ -103,12 +105,40 @@ impl Tally {
         for kind in packet.carries.iter() {
             self.sensors[kind as usize].sent(now, late, write);
         }
+        self.merged(packet);
+    }
+
+    /// Counts the samples that a sent packet carries as part of a mean.
+    fn merged(&mut self, packet: &Packet) {
         if packet.merges {
             for (sensor, merged) in self.sensors.iter_mut().zip(packet.replaced) {
                 sensor.sent += u64::from(merged);
                 sensor.merged += u64::from(merged);
             }
         }
+    }
+
+    /// Counts a packet as sent that was put with others since `began`, without a look at the clock: nothing is paced
+    /// then, so there is no lateness, and there was no call to measure.
+    #[inline]
+    pub(super) fn gathered(&mut self, packet: &Packet, began: i64) {
+        if self.packets == 0 {
+            self.first = began;
+        }
+        self.last_bytes = packet.size() as u64;
+        self.packets += 1;
+        self.bytes += self.last_bytes;
+        self.gathered += 1;
+        for kind in packet.carries.iter() {
+            self.sensors[kind as usize].sent += 1;
+        }
+        self.merged(packet);
+    }
+
+    /// The packets gathered since the last call were sent by `now`; returns how many.
+    pub(super) fn gathered_by(&mut self, now: i64) -> u64 {
+        self.last = now;
+        std::mem::take(&mut self.gathered)
     }
 
     /// Counts the packet sent at `now` as one of the scene; `asks` is whether the other side answers such packets.
@@ -141,7 +171,7 @@ impl Tally {
 
     /// Counts the samples that newer ones replaced before this packet as dropped; returns how many.
     pub(super) fn replaced(&mut self, packet: &Packet) -> u64 {
-        if packet.merges {
+        if packet.merges || packet.replaced.iter().all(|&replaced| replaced == 0) {
             return 0;
         }
         let pairs = self.sensors.iter_mut().zip(packet.replaced);

@@ -33,20 +33,15 @@ pub(super) fn feeds(plan: &Plan, outputs: &[Output]) -> Vec<Feed> {
 }
 
 /// Makes a whole scene's packets, without a rest.
-pub(super) fn produce(
-    plan: &Plan,
-    outputs: &[Output],
-    ring: rtrb::Producer<Item>,
-    shared: &Shared,
-) -> Vec<Made> {
+pub(super) fn produce(plan: &Plan, outputs: &[Output], ring: ring::Inlet, shared: &Shared) -> Vec<Made> {
     let task = Task { plan, end: plan.duration, rest: None };
     let feeds = producer::produce(task, feeds(plan, outputs), ring, shared);
     feeds.into_iter().map(Feed::made).collect()
 }
 
 /// The ring of a whole scene, made ahead, and the counts of what was made.
-pub(super) fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<Item>, Made) {
-    let (ring, consumer) = rtrb::RingBuffer::new(1 << 16);
+pub(super) fn made(plan: &Plan, to: &str, shared: &Shared) -> (ring::Outlet, Made) {
+    let (ring, consumer) = ring::ring(1 << 16);
     let made = produce(plan, &[output(to)], ring, shared).remove(0);
     (consumer, made)
 }
@@ -54,13 +49,13 @@ pub(super) fn made(plan: &Plan, to: &str, shared: &Shared) -> (rtrb::Consumer<It
 /// A pacer of one output that drops what its link does not take.
 pub(super) fn pacer<C: Clock>(
     clock: C,
-    ring: rtrb::Consumer<Item>,
+    ring: ring::Outlet,
     sender: Sender,
     speed: Speed,
     shared: &Arc<Shared>,
 ) -> Pacer<C> {
     let lanes = vec![Lane::new(sender, Overload::DropNewest)];
-    Pacer { pace: Pace::new(clock, speed, shared.clone()), ring, lanes }
+    Pacer::new(Pace::new(clock, speed, shared.clone()), ring, lanes)
 }
 
 /// The report of each sensor of a scene that was paced over one output.

@@ -56,8 +56,7 @@ impl Betaflight {
 impl Encoder for Betaflight {
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
         let (release, attitude) = (self.release, now.truth.attitude);
-        let mut buffer = [0; betaflight::MAX_LEN];
-        self.latest.encode(now.t, now.readings, out, &mut buffer, |_, newest, buffer| {
+        self.latest.encode(now.t, now.readings, out, |_, newest, buffer| {
             let value = |kind| newest.body(kind).unwrap_or(Vector::ZERO);
             write([value(SensorKind::Gyro), value(SensorKind::Accel)], newest, attitude, release, buffer)
         });

@@ -153,7 +153,7 @@ impl Faulty {
         match self.acts.kind {
             PacketFaultKind::Stall if t.is_none_or(|t| t >= self.end) => {
                 let due = self.end.min(now);
-                out.extend(self.held.drain(..).map(|packet| Packet { due: packet.due.max(due), ..packet }));
+                out.extend(self.held.drain(..).map(|packet| packet.due_at(packet.due.max(due))));
             }
             PacketFaultKind::Split => {
                 while let Some(rest) = self.held.pop_front_if(|rest| t.is_none_or(|t| rest.due <= t)) {
@@ -182,7 +182,7 @@ impl Faulty {
             && let Some(overtaken) = self.held.pop_front()
         {
             self.acts.ahead.push_back(due);
-            return out.extend([packet, Packet { due, ..overtaken }]);
+            return out.extend([packet, overtaken.due_at(due)]);
         }
         if !(self.start..self.end).contains(&due) || !self.hits() {
             return out.push(packet);
@@ -202,7 +202,9 @@ impl Faulty {
                 for kind in packet.carries.iter() {
                     added[kind as usize] += 1;
                 }
-                out.extend([packet, Packet { replaced: ByKind::default(), ..packet }]);
+                out.push(packet);
+                packet.replaced = ByKind::default();
+                out.push(packet);
             }
             // Counted when it happens.
             PacketFaultKind::Reorder => {

@@ -61,9 +61,8 @@ impl Ilabs {
 impl Encoder for Ilabs {
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
         let attitude = angles(self.claim, now.truth);
-        let mut buffer = [0; ilabs::MAX_LEN];
         let write = |t: SimTime, newest: &Told, buffer: &mut [u8]| write(t, newest, attitude, buffer);
-        self.latest.encode(now.t, now.readings, out, &mut buffer, write);
+        self.latest.encode(now.t, now.readings, out, write);
     }
 
     fn farewell(&mut self, end: &Truth, out: &mut Vec<Packet>) {

@@ -6,7 +6,7 @@
 
 use super::beat::Beat;
 use super::newest::Told;
-use super::{Newest, Packet, Setup, stopped};
+use super::{MAX_PACKET, Newest, Packet, Setup, stopped};
 use crate::earth::SEA_LEVEL_PRESSURE;
 use crate::geometry::{Body, Vector};
 use crate::motion::Truth;
@@ -48,13 +48,12 @@ impl Latest {
         t: SimTime,
         readings: &[Reading],
         out: &mut Vec<Packet>,
-        buffer: &mut [u8],
         mut write: impl FnMut(SimTime, &Told, &mut [u8]) -> usize,
     ) {
         let mut send = |latest: &mut Latest, due| {
             if latest.has_begun() {
-                let len = write(due, &latest.newest.told, buffer);
-                out.push(latest.packet(due, latest.kinds, &buffer[..len]));
+                let kinds = latest.kinds;
+                latest.append(out, due, kinds, |newest, bytes| write(due, newest, bytes));
             }
             latest.beat.step();
         };
@@ -91,9 +90,16 @@ impl Latest {
         self.beat.change(rate, now);
     }
 
-    /// A packet of these bytes that carries what is new of these kinds.
-    pub(super) fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
-        self.newest.packet(due, kinds, bytes)
+    /// Appends a packet that carries what is new of these kinds; `write` makes its bytes from the newest readings.
+    #[inline]
+    pub(super) fn append(
+        &mut self,
+        out: &mut Vec<Packet>,
+        due: SimTime,
+        kinds: Kinds,
+        write: impl FnOnce(&Told, &mut [u8; MAX_PACKET]) -> usize,
+    ) {
+        self.newest.append(out, due, kinds, write);
     }
 
     /// Whether the first sample is there, before which there are no packets.

@@ -270,15 +270,15 @@ impl Encoder for Mavlink {
         if readings.iter().any(|reading| Some(reading.kind) == self.carrier) && self.is_turn() {
             let (message, header) = (self.hil_sensor(t), self.header());
             // A packet holds every message.
-            let write = |bytes: &mut [u8]| mavlink::encode(&header, &message, bytes).unwrap_or(0);
-            out.push(self.newest.fill(t, KINDS, write));
+            self.newest
+                .append(out, t, KINDS, |_, bytes| mavlink::encode(&header, &message, bytes).unwrap_or(0));
         }
         let fix = readings.iter().find_map(|reading| Some(reading.position()?.fix));
         if let (Some(fix), Some(claims)) = (fix, &self.claims) {
-            let message = gps::message(t, &fix, claims);
-            let mut buffer = [0; mavlink::MAX_LEN];
-            let bytes = self.bytes(&message, &mut buffer);
-            out.push(self.newest.packet(t, SensorKind::Gps.into(), bytes));
+            let (message, header) = (gps::message(t, &fix, claims), self.header());
+            self.newest.append(out, t, SensorKind::Gps.into(), |_, bytes| {
+                mavlink::encode(&header, &message, bytes).unwrap_or(0)
+            });
         }
         if !self.extras.is_empty() {
             self.extras(now, out);

@@ -46,8 +46,7 @@ impl Mip {
 
 impl Encoder for Mip {
     fn encode(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
-        let mut buffer = [0; mip::MAX_LEN];
-        self.latest.encode(now.t, now.readings, out, &mut buffer, |_, newest, buffer| write(newest, buffer));
+        self.latest.encode(now.t, now.readings, out, |_, newest, buffer| write(newest, buffer));
     }
 
     fn farewell(&mut self, end: &Truth, out: &mut Vec<Packet>) {

@@ -93,12 +93,10 @@ impl Mpu {
     }
 
     fn push(&mut self, t: SimTime, kinds: Kinds, packet: &mpu::Packet, out: &mut Vec<Packet>) {
-        let mut buffer = [0; mpu::MAX_LEN];
-        let t_us = (t.0 / 1000) as u32;
-        // MAX_LEN holds every packet.
-        let len = mpu::encode(self.seq, t_us, packet, &mut buffer).unwrap_or(0);
-        self.seq = self.seq.wrapping_add(1);
-        out.push(self.newest.packet(t, kinds, &buffer[..len]));
+        let (seq, t_us) = (self.seq, (t.0 / 1000) as u32);
+        // A packet of ours holds every one of the chip's.
+        self.newest.append(out, t, kinds, |_, bytes| mpu::encode(seq, t_us, packet, bytes).unwrap_or(0));
+        self.seq = seq.wrapping_add(1);
     }
 
     /// The newest reading in counts on the chip's axes.

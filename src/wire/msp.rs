@@ -108,10 +108,9 @@ impl Encoder for Msp {
             _ => *reading,
         }));
         let strength = now.truth.field.length();
-        let mut buffer = [0; msp::MAX_LEN];
         let Msp { latest, turned, position, .. } = self;
         let mut fix = now.readings.iter().find_map(|reading| Some(reading.position()?.fix));
-        latest.encode(now.t, turned, out, &mut buffer, |due, newest, buffer| {
+        latest.encode(now.t, turned, out, |due, newest, buffer| {
             // A packet that is due before now does not know the fix of now.
             position.take_in(fix.take_if(|_| due == now.t));
             let value = |kind| newest.body(kind).unwrap_or(Vector::ZERO);

@@ -1,6 +1,6 @@
 //! The newest sample of each sensor, for packets that carry several.
 
-use super::{Options, Packet};
+use super::{MAX_PACKET, Options, Packet};
 use crate::geometry::{Body, Vector};
 use crate::sensor::{ByKind, Kinds, Measurement, REFERENCE_TEMPERATURE, Reading, SensorKind};
 use crate::time::SimTime;
@@ -115,18 +115,18 @@ impl Newest {
             .map(|kind| u64::from(self.fresh.contains(kind)) + u64::from(self.replaced[kind as usize]))
     }
 
-    /// A packet of these bytes with the fresh samples among `kinds`.
-    pub fn packet(&mut self, due: SimTime, kinds: Kinds, bytes: &[u8]) -> Packet {
-        let mut packet = Packet::new(due, self.fresh & kinds, bytes);
-        self.hand_over(kinds, &mut packet);
-        packet
-    }
-
-    /// The same of bytes that are written where they belong; `write` returns how many there are.
-    pub fn fill(&mut self, due: SimTime, kinds: Kinds, write: impl FnOnce(&mut [u8]) -> usize) -> Packet {
-        let mut packet = Packet::fill(due, self.fresh & kinds, write);
-        self.hand_over(kinds, &mut packet);
-        packet
+    /// Appends a packet with the fresh samples among `kinds`. `write` gets the newest values and the place for the bytes,
+    /// and returns how many there are.
+    #[inline]
+    pub fn append(
+        &mut self,
+        out: &mut Vec<Packet>,
+        due: SimTime,
+        kinds: Kinds,
+        write: impl FnOnce(&Told, &mut [u8; MAX_PACKET]) -> usize,
+    ) {
+        let packet = Packet::append(out, due, self.fresh & kinds, |bytes| write(&self.told, bytes));
+        self.hand_over(kinds, packet);
     }
 
     /// The packet takes over what these sensors have waiting.

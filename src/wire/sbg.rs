@@ -81,17 +81,17 @@ impl Encoder for Sbg {
         let ticks = |kind: SensorKind| now.readings.iter().any(|reading| reading.kind == kind);
         let told = self.newest.told;
         if self.carrier.is_some_and(ticks) {
-            out.push(self.packet(now.t, INERTIAL, imu(now.t, &told)));
+            self.push(now.t, INERTIAL, &imu(now.t, &told), out);
         }
         if ticks(SensorKind::Mag) {
-            out.push(self.packet(now.t, SensorKind::Mag.into(), field(now.t, &told, self.unit)));
+            self.push(now.t, SensorKind::Mag.into(), &field(now.t, &told, self.unit), out);
         }
         let own = !self.kinds.contains(SensorKind::Baro) && due(AIR, &mut self.next_air, now.t);
         if own || ticks(SensorKind::Baro) {
-            out.push(self.packet(now.t, SensorKind::Baro.into(), air(now.t, &told)));
+            self.push(now.t, SensorKind::Baro.into(), &air(now.t, &told), out);
         }
         if due(QUAT, &mut self.next_quat, now.t) {
-            out.push(self.packet(now.t, Kinds::NONE, attitude(now.t, self.claim, now.truth)));
+            self.push(now.t, Kinds::NONE, &attitude(now.t, self.claim, now.truth), out);
         }
     }
 
@@ -117,12 +117,10 @@ impl Encoder for Sbg {
 }
 
 impl Sbg {
-    /// A packet that carries the fresh samples among `kinds`.
-    fn packet(&mut self, t: SimTime, kinds: Kinds, said: sbg::Packet) -> Packet {
-        let mut buffer = [0; MAX_LEN];
-        // MAX_LEN holds every packet.
-        let len = sbg::encode(&said, &mut buffer).unwrap_or(0);
-        self.newest.packet(t, kinds, &buffer[..len])
+    /// Appends a packet that carries the fresh samples among `kinds`.
+    fn push(&mut self, t: SimTime, kinds: Kinds, said: &sbg::Packet, out: &mut Vec<Packet>) {
+        // A packet of ours holds every one of the unit's.
+        self.newest.append(out, t, kinds, |_, bytes| sbg::encode(said, bytes).unwrap_or(0));
     }
 }
 

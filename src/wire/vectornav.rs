@@ -105,16 +105,15 @@ impl Vectornav {
     }
 
     fn encode_for_ardupilot(&mut self, now: &Now<'_>, out: &mut Vec<Packet>) {
-        let mut buffer = [0; MAX_LEN];
-        self.latest.encode(now.t, now.readings, out, &mut buffer, |t, newest, buffer| {
+        self.latest.encode(now.t, now.readings, out, |t, newest, buffer| {
             encoded(&ardupilot::readings(t, newest), buffer)
         });
         if self.second.due() <= now.t {
             while self.second.due() <= now.t {
                 self.second.step();
             }
-            let len = encoded(&ardupilot::attitude(now.truth), &mut buffer);
-            out.push(Packet::new(now.t, Kinds::NONE, &buffer[..len]));
+            let attitude = ardupilot::attitude(now.truth);
+            Packet::append(out, now.t, Kinds::NONE, |bytes| encoded(&attitude, bytes));
         }
     }
 
@@ -124,10 +123,8 @@ impl Vectornav {
         while self.second.due() < now.t {
             self.push_rest(before.as_ref(), out);
         }
-        let mut buffer = [0; MAX_LEN];
-        self.latest.encode(now.t, now.readings, out, &mut buffer, |t, newest, buffer| {
-            encoded(&px4::readings(t, newest), buffer)
-        });
+        self.latest
+            .encode(now.t, now.readings, out, |t, newest, buffer| encoded(&px4::readings(t, newest), buffer));
         if self.second.due() == now.t {
             self.push_rest(Some(now.truth), out);
         }
@@ -139,9 +136,9 @@ impl Vectornav {
         let due = self.second.due();
         self.second.step();
         let Some(truth) = truth.filter(|_| self.latest.has_begun()) else { return };
-        let mut buffer = [0; MAX_LEN];
-        let len = encoded(&px4::rest(due, self.latest.newest(), truth), &mut buffer);
-        out.push(self.latest.packet(due, px4::NAVIGATION, &buffer[..len]));
+        self.latest.append(out, due, px4::NAVIGATION, |newest, bytes| {
+            encoded(&px4::rest(due, newest, truth), bytes)
+        });
     }
 }
 

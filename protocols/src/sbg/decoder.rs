@@ -49,7 +49,7 @@ impl Format for Sbg {
         }
         let crc_at = HEADER_LEN + len;
         let Some(&[low, high, end]) = held.get(crc_at..crc_at + TAIL_LEN) else { return Verdict::Wait };
-        if CRC.checksum(&held[field::ID..crc_at]).to_le_bytes() != [low, high] {
+        if CRC.of(&held[field::ID..crc_at]).to_le_bytes() != [low, high] {
             return Verdict::Not(Error::Checksum);
         }
         if end != END {
@@ -101,7 +101,7 @@ mod tests {
         let crc_at = len + 2 - TAIL_LEN;
         bytes[4] += 2;
         let sealed = |bytes: &mut [u8]| {
-            let crc = CRC.checksum(&bytes[2..crc_at]);
+            let crc = CRC.of(&bytes[2..crc_at]);
             bytes[crc_at..crc_at + 2].copy_from_slice(&crc.to_le_bytes());
             bytes[crc_at + 2] = END;
         };

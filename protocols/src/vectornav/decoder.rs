@@ -79,7 +79,7 @@ fn binary(held: &[u8]) -> Verdict<Packet> {
             wait = true;
             continue;
         };
-        if CRC.checksum(&packet[1..crc_at]) != bytes::be::<u16>(packet, crc_at..crc_at + CRC_LEN) {
+        if CRC.of(&packet[1..crc_at]) != bytes::be::<u16>(packet, crc_at..crc_at + CRC_LEN) {
             return Verdict::Not(Error::Checksum);
         }
         return Verdict::Packet(parse(&packet[1 + groups.len()..crc_at]), crc_at + CRC_LEN);
