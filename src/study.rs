@@ -1,7 +1,8 @@
 //! Every method against every motion: how accurate, at what cost, and where it fails.
 //!
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
-//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory. All give rows for a table; time
+//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory;
+//! `parsimony`, of the feature `filters`, says what a scene could do without. All give rows for a table; time
 //! comes in as an argument.
 //!
 //! ```
@@ -17,7 +18,8 @@ pub mod allan;
 pub mod cost;
 mod inputs;
 pub mod motions;
-
+#[cfg(feature = "filters")]
+pub mod parsimony;
 pub mod stability;
 
 pub use crate::parallel::{Progress, all_cores};

@@ -4,6 +4,7 @@ mod accuracy;
 mod allan;
 mod cost;
 mod outcome;
+mod parsimony;
 mod stability;
 
 use super::{Refusal, Verdict, say, tell};
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// accuracy, stability, cost, allan or all (default); or the scene directly
+    /// accuracy, stability, cost, allan, parsimony or all (default); or the scene directly
     study: Option<String>,
     /// A TOML file or the name of a built-in scene: adds its motion to the built-in ones, and measures its samples' cost
     scene: Option<String>,
@@ -48,7 +49,8 @@ struct Request<'a> {
 }
 
 /// Every study, in the order of `all`.
-static STUDIES: [&Study; 4] = [&accuracy::STUDY, &stability::STUDY, &cost::STUDY, &allan::STUDY];
+static STUDIES: [&Study; 5] =
+    [&accuracy::STUDY, &stability::STUDY, &cost::STUDY, &allan::STUDY, &parsimony::STUDY];
 
 /// For all of them.
 const ALL: &str = "all";
