@@ -22,7 +22,7 @@ pub struct Arguments {
     /// Write the numbers as CSV and JSON and the charts as SVG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Only motions A to D at 100 Hz and 1 kHz, a tenth of the drift steps, and few cost rounds
+    /// Only motions A to D at 100 Hz and 1 kHz, a tenth of the drift steps, few cost rounds, and few seeds
     #[arg(long)]
     quick: bool,
     /// Print every row as JSON on standard output

@@ -58,9 +58,9 @@ pub struct Effort {
 
 impl Effort {
     /// Minutes.
-    pub const FULL: Effort = Effort { seeds: 24, seconds: 60, rounds: 60, ticks: 20_000 };
+    pub const FULL: Effort = Effort { seeds: 48, seconds: 60, rounds: 100, ticks: 20_000 };
     /// Less than one.
-    pub const QUICK: Effort = Effort { seeds: 6, seconds: 10, rounds: 8, ticks: 4_000 };
+    pub const QUICK: Effort = Effort { seeds: 8, seconds: 20, rounds: 10, ticks: 4_000 };
 }
 
 /// What a part costs and does: a line of `parsimony.csv`, whose columns the fields are.
@@ -97,7 +97,7 @@ pub struct Row {
     pub verdict: Verdict,
     /// About how many seeds would decide it.
     pub seeds_to_decide: Option<f64>,
-    /// Whether a filter reads the sensor, and every such filter's change.
+    /// Every filter's change.
     #[serde(skip)]
     pub filters: Vec<FilterChange>,
 }
@@ -109,7 +109,7 @@ pub struct Leaner {
     pub kept: Vec<String>,
     /// Of what is left out.
     pub left_out: Vec<String>,
-    /// Of what could go alone, but not with the others.
+    /// Of what could go alone, but not with the others, and why.
     pub put_back: Vec<String>,
     /// Nanoseconds a nine-axis sample of the whole scene.
     pub ns_before: f64,
@@ -223,7 +223,8 @@ fn candidates(without: &[(Part, Variant)], rows: &[Row]) -> Vec<Candidate> {
 
 impl Row {
     fn of(part: Part, ns_per_sample: f64, change: Option<Change>, filters: &[FilterChange]) -> Row {
-        let worst = verdicts::worst(filters);
+        let (worst, verdict) = (verdicts::worst(filters), Verdict::of(part, change.as_ref(), filters));
+        let seeds = filters.iter().filter_map(|filter| filter.seeds_to_decide).reduce(f64::max);
         let counts = change.and_then(|change| change.counts);
         let noise = change.and_then(|change| change.noise);
         let shown = change.map(|change| change.times_shown(part)).filter(|times| times.is_finite());
@@ -241,8 +242,8 @@ impl Row {
             interval_deg: worst.map(|filter| filter.change.half),
             margin_deg: worst.map(|filter| filter.margin_deg),
             times_noticed: worst.map(FilterChange::margins).or(shown),
-            verdict: Verdict::of(part, change.as_ref(), filters),
-            seeds_to_decide: filters.iter().filter_map(|filter| filter.seeds_to_decide).reduce(f64::max),
+            verdict,
+            seeds_to_decide: seeds.filter(|_| verdict == Verdict::Undecided),
             filters: filters.to_vec(),
         }
     }
@@ -256,7 +257,7 @@ impl Leaner {
             text: lean::text(plan, &lean, &headline),
             kept: lean.kept.iter().map(name).collect(),
             left_out: lean.left_out.iter().map(|(part, _)| name(part)).collect(),
-            put_back: lean.put_back.iter().map(name).collect(),
+            put_back: lean.put_back.iter().map(|(part, why)| format!("{} ({why})", name(part))).collect(),
             ns_before,
             ns_after,
             filters: lean.filters,
@@ -270,13 +271,17 @@ fn headline(plan: &Plan, lean: &Lean, seeds: u64) -> String {
     if out == 0 {
         return format!("The scene {} as it is: nothing of its {kept} terms can be left out", plan.name);
     }
-    let first = format!("The scene {} without {out} of its {} terms, which it does not need", plan.name, out + kept);
+    let first =
+        format!("The scene {} without {out} of its {} terms, which it does not need", plan.name, out + kept);
     if lean.filters.is_empty() {
         return format!("{first}\nNo filter reads its sensors: only their readings were looked at");
     }
     let bounds = lean.filters.iter().map(|filter| {
         let (bound, margin) = (filter.change.bound(), filter.margin_deg);
-        format!("\n  {}: {:.4} deg, within ±{bound:.4} of it (margin {margin:.4})", filter.filter, filter.rms_deg)
+        format!(
+            "\n  {}: {:.4} deg, within ±{bound:.4} of it (margin {margin:.4})",
+            filter.filter, filter.rms_deg
+        )
     });
     format!(
         "{first}\nIts filters' RMS attitude errors are those of the whole scene, over {seeds} seeds of their own ({} % intervals):{}",

@@ -4,38 +4,87 @@ use super::{Outcome, Request, Study};
 use crate::cli::Refusal;
 use crate::cli::progress::Bar;
 use crate::cli::terminal::Stream;
-use crate::report::{count, number};
+use crate::report::{chart, count, number};
 use crate::scene::Plan;
 use crate::study::all_cores;
-use crate::study::parsimony::{self, CONFIDENCE, Effort, Parsimony, Row};
+use crate::study::parsimony::{self, CONFIDENCE, Effort, Parsimony, Row, Verdict};
 use std::time::Instant;
 
 pub(super) static STUDY: Study =
-    Study { name: "parsimony", files: &["parsimony.csv", "lean.toml"], run };
+    Study { name: "parsimony", files: &["parsimony.csv", "parsimony.svg", "lean.toml"], run };
 
-/// The scene that is studied where none is given: turns, holds, vibration of a motor, a part's noise and counts.
-const SCENE: &str = "vibration";
+/// The scene that is studied where none is given: it has almost every error term, and turns about all axes.
+const SCENE: &str = "full-mpu9250";
+/// A study of more seeds than these is not proposed.
+const MANY: f64 = 10_000.0;
+/// Effects below this are drawn on the floor of the chart, in margins.
+const FLOOR: f64 = 1e-3;
 
 fn run(request: &Request) -> Result<Outcome, Refusal> {
     let effort = if request.quick { Effort::QUICK } else { Effort::FULL };
     let bar = Bar::of_jobs("parsimony");
     let start = Instant::now();
-    let of = |plan: &Plan| {
-        parsimony::run(plan, effort, all_cores(), &|| start.elapsed(), &|done, all| bar.jobs(done, all))
+    let default;
+    let plan = match request.scene {
+        Some(plan) => plan,
+        None => {
+            default = Plan::load(SCENE, &[])?;
+            &default
+        }
     };
-    let found = match request.scene {
-        Some(plan) => of(plan),
-        None => of(&Plan::load(SCENE, &[])?),
-    };
+    let found =
+        parsimony::run(plan, effort, all_cores(), &|| start.elapsed(), &|done, all| bar.jobs(done, all));
     bar.clear();
     let found = found?;
-    Outcome::of("parsimony", &found, text(&found))?.csv(&found.rows)?.file("lean.toml", found.lean.text.clone())
+    let of_its_own = serde_json::json!({ "parsimony": &found });
+    let mut outcome = Outcome::of("parsimony", &of_its_own, text(&found))?.csv(&found.rows)?;
+    outcome = outcome.file("parsimony.svg", chart(&found))?.file("lean.toml", found.lean.text.clone())?;
+    // The lean scene names its logs as a copy of the scene does, beside it.
+    for file in &plan.attached {
+        outcome = outcome.file(&file.name, file.contents()?)?;
+    }
+    Ok(outcome)
+}
+
+/// A point a part: its cost, and its effect in what would just be noticed.
+fn chart(found: &Parsimony) -> String {
+    // What costs less than the clock can tell lies where that begins.
+    let least = found.ns_of_nothing.max(0.1);
+    let group = |verdict: Verdict| Verdict::ALL.iter().position(|known| *known == verdict).unwrap_or(0);
+    let point = |row: &Row| {
+        Some(chart::Point {
+            name: format!("{} {}", row.sensor, row.term.replace('_', " ")),
+            group: group(row.verdict),
+            x: row.ns_per_sample.max(least),
+            y: row.times_noticed?,
+            spread: None,
+        })
+    };
+    chart::points(&chart::Points {
+        title: format!("What each term of {} costs and what it does", found.scene),
+        subtitle: format!(
+            "{} s, {} seeds; the effect is the largest that the {} % interval of any filter's change allows",
+            number(found.seconds),
+            found.seeds,
+            CONFIDENCE * 100.0
+        ),
+        x_label: "cost (ns a sample of its sensor)".into(),
+        y_label: "effect (times what is noticed)".into(),
+        y_floor: Some(FLOOR),
+        groups: Verdict::ALL.iter().map(Verdict::to_string).collect(),
+        points: found.rows.iter().filter_map(point).collect(),
+        levels: vec![chart::Level { name: "below: nothing is noticed".into(), y: 1.0 }],
+        notes: vec![format!(
+            "Costs below {} ns are drawn there: it is what the clock can tell.",
+            number(least)
+        )],
+        ..chart::Points::default()
+    })
 }
 
 /// The table, and what the leaner scene is.
 fn text(found: &Parsimony) -> String {
-    let heading =
-        ["sensor", "term", "ns", "counts", "largest", "of noise", "largest", "filter", "error deg", "verdict"];
+    let heading = ["sensor", "term", "ns", "counts", "of noise", "filter", "error deg", "verdict"];
     let lines: Vec<Vec<String>> = found.rows.iter().map(line).collect();
     let seconds = number(found.seconds);
     format!(
@@ -49,21 +98,24 @@ fn text(found: &Parsimony) -> String {
 }
 
 fn line(row: &Row) -> Vec<String> {
-    let or_dash = |value: Option<f64>| value.map_or("-".into(), short);
-    let error = row.change_deg.zip(row.interval_deg).map_or("-".into(), |(change, half)| {
-        format!("{:+.4} ± {half:.4}", change + 0.0)
-    });
-    let seeds = row.seeds_to_decide.map_or(String::new(), |seeds| {
-        if seeds < 1e5 { format!(" (about {seeds} seeds would tell)") } else { String::new() }
-    });
+    let both = |rms: Option<f64>, most: Option<f64>| {
+        rms.zip(most).map_or("-".into(), |(rms, most)| format!("{}, {}", short(rms), short(most)))
+    };
+    let error = row
+        .change_deg
+        .zip(row.interval_deg)
+        .map_or("-".into(), |(change, half)| format!("{:+.4} ± {half:.4}", change + 0.0));
+    let seeds = match row.seeds_to_decide {
+        None => String::new(),
+        Some(seeds) if seeds < MANY => format!(": about {seeds} seeds would tell"),
+        Some(_) => format!(": not even {MANY} seeds would tell"),
+    };
     vec![
         row.sensor.into(),
         row.term.replace('_', " "),
         format!("{:.1}", row.ns_per_sample + 0.0),
-        or_dash(row.rms_counts),
-        or_dash(row.largest_counts),
-        or_dash(row.rms_of_noise),
-        or_dash(row.largest_of_noise),
+        both(row.rms_counts, row.largest_counts),
+        both(row.rms_of_noise, row.largest_of_noise),
         row.filter.clone().unwrap_or("-".into()),
         error,
         format!("{}{seeds}", row.verdict),
@@ -87,7 +139,7 @@ fn short(value: f64) -> String {
 fn legend(found: &Parsimony) -> String {
     format!(
         "ns: a sample of the sensor, or a tick of the scene; below {:.1} it is the clock's own.\n\
-         counts, of noise: RMS and largest change of a reading, in counts and in the noise of a sample.\n\
+         counts, of noise: RMS and largest change of a reading, in counts and in the white noise of a sample.\n\
          error: what the RMS attitude error of the filter that decides is more without the term, at {} %.\n",
         found.ns_of_nothing,
         CONFIDENCE * 100.0
@@ -100,7 +152,7 @@ fn lean(found: &Parsimony) -> String {
     let cost = format!("{:.1} ns a nine-axis sample before, {:.1} after", lean.ns_before, lean.ns_after);
     let put_back = match &lean.put_back[..] {
         [] => String::new(),
-        some => format!("\nput back, for they do not go with the others: {}", some.join(", ")),
+        some => format!("\nput back: {}", some.join(", ")),
     };
     match lean.left_out.len() {
         0 => format!("\nNothing can be left out: the lean scene is the whole one.{put_back}\n"),

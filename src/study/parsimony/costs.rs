@@ -3,7 +3,7 @@
 use super::parts::Part;
 use super::variant::Variant;
 use crate::scene::{Plan, SceneError};
-use crate::sensor::SensorKind;
+use crate::sensor::{Block, SensorKind};
 use crate::time::SimTime;
 use std::hint::black_box;
 use std::time::Duration;
@@ -21,7 +21,7 @@ pub struct Rounds<'a> {
 /// What parts cost, and how far such a difference can be off.
 #[derive(Clone, Debug, Default)]
 pub struct Costs {
-    /// Of each part, in their order: nanoseconds a sample of its sensor, or a tick of the scene.
+    /// Of each part, in the order given, sensor by sensor: nanoseconds a sample of its sensor, or a tick of the scene.
     pub ns: Vec<f64>,
     /// The largest difference that was measured between a scene and itself, in the same unit.
     pub ns_of_nothing: f64,
@@ -34,18 +34,22 @@ impl Rounds<'_> {
     /// # Errors
     /// A variant that is no scene.
     pub fn costs(&self, whole: &Variant, without: &[(Part, Variant)]) -> Result<Costs, SceneError> {
-        let mut costs = Costs { ns: vec![0.0; without.len()], ns_of_nothing: 0.0 };
         let mut owners: Vec<Option<SensorKind>> = without.iter().map(|(part, _)| part.sensor).collect();
         owners.dedup();
-        for owner in owners {
+        let mut groups = Vec::new();
+        for &owner in &owners {
             let of = |variant: &Variant| owner.map_or_else(|| variant.clone(), |kind| variant.alone(kind));
-            let mine: Vec<usize> = (0..without.len()).filter(|&i| without[i].0.sensor == owner).collect();
             // The whole twice: what it differs by from itself is the measurement's own.
-            let variants = [whole, whole].into_iter().chain(mine.iter().map(|&i| &without[i].1));
-            let (ns, _) = self.least(&variants.map(of).collect::<Vec<_>>())?;
+            let mine = without.iter().filter(|(part, _)| part.sensor == owner).map(|(_, variant)| variant);
+            groups.push(Group::new([whole, whole].into_iter().chain(mine).map(of), self.ticks)?);
+        }
+        self.play(&mut groups);
+        let mut costs = Costs::default();
+        for group in groups {
+            let ns = group.ns_per_tick();
             costs.ns_of_nothing = costs.ns_of_nothing.max((ns[0] - ns[1]).abs());
             let with = ns[0].min(ns[1]);
-            mine.iter().zip(&ns[2..]).for_each(|(&i, without)| costs.ns[i] = with - without);
+            costs.ns.extend(ns[2..].iter().map(|without| with - without));
         }
         Ok(costs)
     }
@@ -55,32 +59,62 @@ impl Rounds<'_> {
     /// # Errors
     /// A variant that is no scene.
     pub fn nine_axis(&self, variants: &[Variant]) -> Result<Vec<f64>, SceneError> {
-        let (ns, ticks) = self.least(variants)?;
-        Ok(ns.iter().zip(ticks).map(|(ns, [ticks, samples])| 3.0 * ns * ticks / samples).collect())
+        let mut groups = [Group::new(variants.iter().cloned(), self.ticks)?];
+        self.play(&mut groups);
+        let [group] = groups;
+        let each = group.ns_per_tick().into_iter().zip(&group.counts);
+        Ok(each.map(|(ns, [ticks, samples])| 3.0 * ns * ticks / samples).collect())
     }
 
-    /// Nanoseconds a distinct tick of each, least of all rounds, and how many ticks and samples there are.
-    fn least(&self, variants: &[Variant]) -> Result<(Vec<f64>, Vec<[f64; 2]>), SceneError> {
-        let plans = variants.iter().map(|variant| variant.plan(0)).collect::<Result<Vec<_>, _>>()?;
-        let end = plans.iter().map(|plan| end(plan, self.ticks)).min().unwrap_or_default();
-        let mut best = vec![Duration::MAX; variants.len()];
-        let mut counts = vec![[1.0; 2]; variants.len()];
+    /// Every scene of every group in turn, again and again, so that what disturbs the machine for a while disturbs all.
+    fn play(&self, groups: &mut [Group]) {
         for _ in 0..self.rounds {
-            for (i, (variant, plan)) in variants.iter().zip(&plans).enumerate() {
-                let mut player = variant.player(plan, end, &[]);
-                let (mut ticks, mut samples) = (0, 0);
-                let start = (self.now)();
-                while let Some(columns) = player.play_columns() {
-                    ticks += columns.truth.len();
-                    samples += columns.sensors().map(|block| block.len()).sum::<usize>();
-                    black_box(columns);
-                }
-                best[i] = best[i].min((self.now)().saturating_sub(start));
-                counts[i] = [ticks.max(1) as f64, samples.max(1) as f64];
+            for group in &mut *groups {
+                group.play(self.now);
             }
         }
-        let ns = best.iter().zip(&counts).map(|(best, [ticks, _])| best.as_nanos() as f64 / ticks);
-        Ok((ns.collect(), counts))
+    }
+}
+
+/// Scenes that are compared with one another.
+struct Group {
+    variants: Vec<Variant>,
+    plans: Vec<Plan>,
+    end: SimTime,
+    /// The quickest playing of each.
+    best: Vec<Duration>,
+    /// Distinct ticks of each, and samples of all its sensors.
+    counts: Vec<[f64; 2]>,
+}
+
+impl Group {
+    fn new(variants: impl Iterator<Item = Variant>, ticks: u64) -> Result<Group, SceneError> {
+        let variants: Vec<Variant> = variants.collect();
+        let plans = variants.iter().map(|variant| variant.plan(0)).collect::<Result<Vec<_>, _>>()?;
+        let end = plans.iter().map(|plan| end(plan, ticks)).min().unwrap_or_default();
+        let (best, counts) = (vec![Duration::MAX; variants.len()], vec![[1.0; 2]; variants.len()]);
+        Ok(Group { variants, plans, end, best, counts })
+    }
+
+    fn play(&mut self, now: &dyn Fn() -> Duration) {
+        for (i, (variant, plan)) in self.variants.iter().zip(&self.plans).enumerate() {
+            let mut player = variant.player(plan, self.end, &[]);
+            let (mut ticks, mut samples) = (0, 0);
+            let start = now();
+            while let Some(columns) = player.play_columns() {
+                ticks += columns.truth.len();
+                samples += columns.sensors().map(Block::len).sum::<usize>();
+                black_box(columns);
+            }
+            self.best[i] = self.best[i].min(now().saturating_sub(start));
+            self.counts[i] = [ticks.max(1) as f64, samples.max(1) as f64];
+        }
+    }
+
+    /// Of a sensor alone a tick is a sample.
+    fn ns_per_tick(&self) -> Vec<f64> {
+        let each = self.best.iter().zip(&self.counts);
+        each.map(|(best, [ticks, _])| best.as_nanos() as f64 / ticks).collect()
     }
 }
 

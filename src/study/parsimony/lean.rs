@@ -2,7 +2,7 @@
 
 use super::paired::Finding;
 use super::parts::{self, Part, What};
-use super::scores::{Scores, Trials};
+use super::scores::Trials;
 use super::variant::{Base, Variant};
 use super::verdicts::{FilterChange, filter_changes};
 use crate::parallel::Progress;
@@ -29,8 +29,8 @@ pub struct Lean {
     pub kept: Vec<Part>,
     /// What it leaves out, with why.
     pub left_out: Vec<(Part, String)>,
-    /// What could have gone alone, but not with all of these.
-    pub put_back: Vec<Part>,
+    /// What could have gone alone, but not with all of these, and why.
+    pub put_back: Vec<(Part, &'static str)>,
     /// Its filters against the whole scene's; each is the same.
     pub filters: Vec<FilterChange>,
 }
@@ -50,39 +50,47 @@ pub fn search(
     let mut out = candidates.to_vec();
     out.sort_by(|a, b| a.margins.total_cmp(&b.margins));
     let mut put_back = Vec::new();
-    let scores = match out.is_empty() || trials.runs.is_empty() {
-        true => vec![Scores::default()],
-        false => trials.of(&[&whole], progress)?,
-    };
+    let untested = trials.runs.is_empty();
+    let scores = if untested || out.is_empty() { None } else { trials.of(&[&whole], progress)?.pop() };
     loop {
-        let left_out: Vec<Part> = out.iter().map(|candidate| candidate.part).collect();
-        let variant = base.without_all(&left_out);
-        let worst = if base.is_scene_without(&left_out) {
-            let mut filters = Vec::new();
-            if !out.is_empty() && !trials.runs.is_empty() {
-                let lean = trials.of(&[&variant], progress)?;
-                filters = filter_changes(trials.runs, &scores[0], &lean[0]);
-            }
-            if filters.iter().all(|filter| filter.finding == Finding::Same) {
-                let kept = parts::parts(&variant.plan(0)?);
-                let left_out = left_out_of(&whole, &kept, &out)?;
-                return Ok(Lean { variant, kept, left_out, put_back, filters });
-            }
-            out.len() - 1
-        } else {
-            // A key that another needs is put back first.
-            out.iter().rposition(|candidate| base.without(candidate.part).is_held()).unwrap_or(out.len() - 1)
-        };
-        put_back.push(out.remove(worst).part);
+        if let Some((index, why)) = blocked(base, &out) {
+            put_back.push((out.remove(index).part, why));
+            continue;
+        }
+        let variant = base.without_all(&parts_of(&out));
+        let mut filters = Vec::new();
+        if let Some(scores) = scores.as_ref().filter(|_| !out.is_empty()) {
+            let lean = trials.of(&[&variant], progress)?;
+            filters = filter_changes(trials.runs, scores, &lean[0]);
+        }
+        if filters.iter().all(|filter| filter.finding == Finding::Same) {
+            let kept = parts::parts(&variant.plan(0)?);
+            let left_out = left_out_of(&whole, &kept, &out)?;
+            return Ok(Lean { variant, kept, left_out, put_back, filters });
+        }
+        put_back.extend(out.pop().map(|candidate| (candidate.part, "not with all of the others")));
     }
 }
 
+fn parts_of(out: &[Candidate]) -> Vec<Part> {
+    out.iter().map(|candidate| candidate.part).collect()
+}
+
+/// What cannot go because the rest is no scene without it, and why: first what no scene can lose alone, if another key
+/// still needs its key.
+fn blocked(base: &Base, out: &[Candidate]) -> Option<(usize, &'static str)> {
+    if base.is_scene_without(&parts_of(out)) {
+        return None;
+    }
+    let held = |part: Part| !base.is_scene_without(&[part]);
+    let (held, free): (Vec<_>, Vec<_>) = parts_of(out).into_iter().partition(|part| held(*part));
+    let needed = held.into_iter().find(|part| !base.is_scene_without(&[&free[..], &[*part]].concat()));
+    let index = out.iter().position(|candidate| Some(candidate.part) == needed);
+    Some((index.unwrap_or(out.len() - 1), "another key needs its key"))
+}
+
 /// Everything that the lean scene has not, in the order of the whole one.
-fn left_out_of(
-    whole: &Variant,
-    kept: &[Part],
-    out: &[Candidate],
-) -> Result<Vec<(Part, String)>, SceneError> {
+fn left_out_of(whole: &Variant, kept: &[Part], out: &[Candidate]) -> Result<Vec<(Part, String)>, SceneError> {
     let forces = out.iter().filter(|candidate| matches!(candidate.part.what, What::Force(_)));
     let forces: Vec<Part> = forces.map(|candidate| candidate.part).collect();
     let gone = |part: &Part| match part.what {
@@ -147,12 +155,22 @@ fn comments(lean: &Lean, owner: Option<SensorKind>) -> Vec<String> {
 fn prune(table: &mut Table, kind: SensorKind, kept: &[Part]) {
     let has = |name: &str| kept.iter().any(|part| part.is_term(name));
     let used = |name: &str| has(name) || (name == "bias_instability" && has("flicker"));
-    for term in TERMS.into_iter().filter(|term| term.serves.contains(kind) && !used(term.name)) {
-        (term.keys)(kind).iter().for_each(|key| drop(table.remove(key.name)));
+    for term in TERMS.into_iter().filter(|term| term.serves.contains(kind)) {
+        for key in (term.keys)(kind) {
+            let zero = key.default == Some("0") && zero(table, key.name);
+            if !used(term.name) || zero {
+                table.remove(key.name);
+            }
+        }
     }
     for (key, idle) in [("sampling", "point"), ("phase", "0 s")] {
         if table.get(key).and_then(Value::as_str) == Some(idle) {
             table.remove(key);
         }
     }
+}
+
+/// Whether a key says `0`, of whatever unit, as it does without being given.
+fn zero(table: &Table, key: &str) -> bool {
+    table.get(key).and_then(Value::as_str).is_some_and(|text| text.split_whitespace().next() == Some("0"))
 }

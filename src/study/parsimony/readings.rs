@@ -89,7 +89,8 @@ fn between(sensor: &SensorPlan, with: &Samples, without: &Samples) -> Change {
     let there = with.missing.iter().zip(&without.missing).map(|(a, b)| !a && !b).collect::<Vec<_>>();
     let axis = |axis: usize| {
         let pairs = with.reading[axis].iter().zip(&without.reading[axis]).zip(&there);
-        let differences = pairs.filter(|(_, there)| **there).map(|((with, without), _)| (with - without).abs());
+        let differences =
+            pairs.filter(|(_, there)| **there).map(|((with, without), _)| (with - without).abs());
         let (mut squares, mut most, mut n) = (0.0, 0.0f64, 0);
         for difference in differences {
             squares += difference * difference;

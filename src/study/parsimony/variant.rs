@@ -111,11 +111,6 @@ impl Variant {
         Variant { scene, ..self.clone() }
     }
 
-    /// Whether its part is left out of the chain, because another key needs its key.
-    pub fn is_held(&self) -> bool {
-        self.held.is_some()
-    }
-
     /// Plays one of its plans, besides without these terms of every sensor.
     pub fn player<'p>(&self, plan: &'p Plan, end: SimTime, besides: &[&'static str]) -> Player<'p> {
         Player::built(plan, end, BLOCK, |sensor: &SensorPlan| {

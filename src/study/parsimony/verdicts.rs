@@ -29,6 +29,15 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Every one, the gravest first.
+    pub const ALL: [Verdict; 5] = [
+        Verdict::Needed,
+        Verdict::Undecided,
+        Verdict::NotNoticed,
+        Verdict::BelowNoise,
+        Verdict::BelowResolution,
+    ];
+
     /// Of a part's change of readings, where it is known, and what each filter that reads its sensor says.
     pub fn of(part: Part, change: Option<&Change>, filters: &[FilterChange]) -> Verdict {
         let any = |finding| filters.iter().any(|filter| filter.finding == finding);
@@ -37,9 +46,7 @@ impl Verdict {
             let noise = change.noise.filter(|_| !part.is_term("white_noise"));
             let resolved = counts.is_some_and(|[_, most]| most < HALF_A_COUNT);
             let drowned = noise.is_some_and(|[_, most]| most < A_TENTH);
-            resolved
-                .then_some(Verdict::BelowResolution)
-                .or_else(|| drowned.then_some(Verdict::BelowNoise))
+            resolved.then_some(Verdict::BelowResolution).or_else(|| drowned.then_some(Verdict::BelowNoise))
         });
         if any(Finding::Different) {
             return Verdict::Needed;
