@@ -129,6 +129,8 @@ pub struct Parsimony {
     pub scene: String,
     /// How much of it was played, s.
     pub seconds: f64,
+    /// How long it is, s.
+    pub whole_seconds: f64,
     /// Over how many seeds.
     pub seeds: u64,
     /// Of the intervals.
@@ -180,6 +182,7 @@ pub fn run(
     Ok(Parsimony {
         scene: plan.name.clone(),
         seconds: end.seconds(),
+        whole_seconds: plan.duration.seconds(),
         seeds,
         confidence: CONFIDENCE,
         ns_of_nothing: costs.ns_of_nothing,
@@ -196,17 +199,17 @@ fn filters(
     trials: &Trials<'_>,
     progress: Progress,
 ) -> Result<Vec<Vec<FilterChange>>, SceneError> {
-    let read = |part: Part| !trials.runs.is_empty() && part.sensor.is_none_or(scores::reads);
-    let played: Vec<&Variant> =
-        [whole].into_iter().chain(without.iter().filter(|(part, _)| read(*part)).map(|(_, v)| v)).collect();
+    let read = |part: Part| trials.runs.iter().any(|run| run.reads(part.sensor));
+    let variants = without.iter().filter(|(part, _)| read(*part)).map(|(_, variant)| variant);
+    let played: Vec<&Variant> = [whole].into_iter().chain(variants).collect();
     if played.len() == 1 {
         return Ok(vec![Vec::new(); without.len()]);
     }
     let mut scores = trials.of(&played, progress)?.into_iter();
     let with = scores.next().unwrap_or_default();
-    let of = |(part, _): &(Part, Variant)| match read(*part) {
-        true => scores.next().map_or_else(Vec::new, |one| verdicts::filter_changes(trials.runs, &with, &one)),
-        false => Vec::new(),
+    let of = |(part, _): &(Part, Variant)| {
+        let one = if read(*part) { scores.next() } else { None };
+        one.map_or_else(Vec::new, |one| verdicts::filter_changes(trials.runs, part.sensor, &with, &one))
     };
     Ok(without.iter().map(of).collect())
 }

@@ -63,8 +63,8 @@ fn chart(found: &Parsimony) -> String {
     chart::points(&chart::Points {
         title: format!("What each term of {} costs and what it does", found.scene),
         subtitle: format!(
-            "{} s, {} seeds; the effect is the largest that the {} % interval of any filter's change allows",
-            number(found.seconds),
+            "{}, {} seeds; the effect is the largest that the {} % interval of any filter's change allows",
+            played(found),
             found.seeds,
             CONFIDENCE * 100.0
         ),
@@ -86,15 +86,29 @@ fn chart(found: &Parsimony) -> String {
 fn text(found: &Parsimony) -> String {
     let heading = ["sensor", "term", "ns", "counts", "of noise", "filter", "error deg", "verdict"];
     let lines: Vec<Vec<String>> = found.rows.iter().map(line).collect();
-    let seconds = number(found.seconds);
+    if lines.is_empty() {
+        return format!(
+            "{}: it has no error term, and nothing else that a key could leave out\n",
+            found.scene
+        );
+    }
+    let played = played(found);
     format!(
-        "{}: {seconds} s, {} seeds; what each term adds\n{}\n{}{}",
+        "{}: {played}, {} seeds; what each term adds\n{}\n{}\n{}",
         found.scene,
         found.seeds,
         Stream::Out.table(&heading, &lines),
         legend(found),
         lean(found)
     )
+}
+
+/// How much of the scene was played.
+fn played(found: &Parsimony) -> String {
+    match found.seconds < found.whole_seconds {
+        true => format!("the first {} s of {}", number(found.seconds), number(found.whole_seconds)),
+        false => format!("{} s", number(found.seconds)),
+    }
 }
 
 fn line(row: &Row) -> Vec<String> {
@@ -137,39 +151,41 @@ fn short(value: f64) -> String {
 }
 
 fn legend(found: &Parsimony) -> String {
+    let error = match found.filters.iter().all(Vec::is_empty) {
+        true => "error: no filter reads these sensors, for each needs gyro and accel: verdicts rest on readings alone.".into(),
+        false => format!(
+            "error: what the RMS attitude error of the filter that decides is more without the term, at {} %.",
+            CONFIDENCE * 100.0
+        ),
+    };
     format!(
-        "ns: a sample of the sensor, or a tick of the scene; below {:.1} it is the clock's own.\n\
+        "ns: a sample of the sensor, or a tick of the scene; below {} it is the clock's own.\n\
          counts, of noise: RMS and largest change of a reading, in counts and in the white noise of a sample.\n\
-         error: what the RMS attitude error of the filter that decides is more without the term, at {} %.\n",
-        found.ns_of_nothing,
-        CONFIDENCE * 100.0
+         {error}\n",
+        short(found.ns_of_nothing),
     )
 }
 
 fn lean(found: &Parsimony) -> String {
     let lean = &found.lean;
-    let all = lean.kept.len() + lean.left_out.len();
-    let cost = format!("{:.1} ns a nine-axis sample before, {:.1} after", lean.ns_before, lean.ns_after);
+    let all = count((lean.kept.len() + lean.left_out.len()) as u64, "term");
     let put_back = match &lean.put_back[..] {
         [] => String::new(),
-        some => format!("\nput back: {}", some.join(", ")),
+        some => format!("put back: {}\n", some.join(", ")),
     };
-    match lean.left_out.len() {
-        0 => format!("\nNothing can be left out: the lean scene is the whole one.{put_back}\n"),
-        _ => format!(
-            "\nlean.toml: {} of {} remain, {}; {cost}{put_back}\n{}",
-            lean.kept.len(),
-            count(all as u64, "term"),
-            lean.kept.join(", "),
-            bounds(found)
-        ),
+    if lean.left_out.is_empty() {
+        return format!("Nothing can be left out: the lean scene is the whole one.\n{put_back}");
     }
+    let cost = format!("{:.1} ns a nine-axis sample before, {:.1} after", lean.ns_before, lean.ns_after);
+    let names = lean.kept.join(", ");
+    let kept = lean.kept.len();
+    format!("lean.toml has {kept} of {all}: {names}\n{put_back}{cost}\n{}", bounds(found))
 }
 
 /// How far the leaner scene's filters can be from the whole scene's.
 fn bounds(found: &Parsimony) -> String {
     if found.lean.filters.is_empty() {
-        return "No filter reads its sensors: this rests on their readings alone.\n".into();
+        return String::new();
     }
     let rows = found.lean.filters.iter().map(|filter| {
         vec![

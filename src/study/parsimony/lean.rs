@@ -61,7 +61,7 @@ pub fn search(
         let mut filters = Vec::new();
         if let Some(scores) = scores.as_ref().filter(|_| !out.is_empty()) {
             let lean = trials.of(&[&variant], progress)?;
-            filters = filter_changes(trials.runs, scores, &lean[0]);
+            filters = filter_changes(trials.runs, None, scores, &lean[0]);
         }
         if filters.iter().all(|filter| filter.finding == Finding::Same) {
             let kept = parts::parts(&variant.plan(0)?);

@@ -76,10 +76,11 @@ impl Paired {
         }
     }
 
-    /// About how many pairs would decide it, if mean and spread stay as they are: `(t·s/(|d̄| − margin))²`.
+    /// About how many pairs would decide it, if the spread stays as it is: as many as narrow the interval to the gap
+    /// between mean and margin. A mean that may as well be zero is taken for zero.
     pub fn pairs_to_decide(&self, margin: f64) -> f64 {
-        let gap = (self.mean.abs() - margin).abs();
-        libm::ceil((self.half / gap).powi(2) * self.pairs as f64)
+        let mean = if self.mean.abs() < self.half { 0.0 } else { self.mean.abs() };
+        libm::ceil((self.half / (mean - margin).abs()).powi(2) * self.pairs as f64)
     }
 }
 
@@ -172,10 +173,14 @@ mod tests {
         assert_eq!(more(-0.5, 0.1).finding(0.2), Finding::Different);
         let unsure = more(0.05, 2.0);
         assert_eq!(unsure.finding(0.2), Finding::Undecided, "a wide interval proves nothing");
-        // As many pairs as it says, and the interval just reaches the margin.
-        let pairs = unsure.pairs_to_decide(0.2);
-        let half = unsure.half * libm::sqrt(20.0 / pairs);
-        assert!((0.05 + half - 0.2).abs() < 1e-3 && pairs > 100.0, "{pairs}");
+        // With as many pairs as it says the interval just reaches the margin, from zero or from a mean that is not zero.
+        let clear = more(0.19, 0.1);
+        assert_eq!(clear.finding(0.2), Finding::Undecided);
+        for (paired, mean) in [(unsure, 0.0), (clear, 0.19)] {
+            let pairs = paired.pairs_to_decide(0.2);
+            let half = paired.half * libm::sqrt(20.0 / pairs);
+            assert!((mean + half - 0.2).abs() < 1e-3 && pairs > 20.0, "{pairs}");
+        }
         assert_eq!(more(0.0, 0.0).finding(0.0), Finding::Same);
         assert_eq!(Paired::of(&[1.0], &[2.0]), None);
         let lost = Paired::of(&[1.0, 1.0], &[f64::NAN, 1.0]).unwrap();

@@ -26,6 +26,15 @@ impl Run {
         format!("{}{}", self.kind.name, if self.with_mag { "" } else { SIX })
     }
 
+    /// Whether it reads this sensor, if one is meant.
+    pub fn reads(&self, sensor: Option<SensorKind>) -> bool {
+        let of = |kind| match kind {
+            SensorKind::Mag => self.with_mag,
+            kind => kind == SensorKind::Gyro || kind == SensorKind::Accel,
+        };
+        sensor.is_none_or(of)
+    }
+
     /// The errors of its attitudes, rad: in total, or of the inclination where nothing tells it north.
     fn error(&self, truth: Attitude, estimate: Attitude) -> f64 {
         if self.with_mag { truth.angle_to(estimate) } else { tilt(truth, estimate) }
@@ -37,11 +46,6 @@ fn tilt(truth: Attitude, estimate: Attitude) -> f64 {
     let down = |attitude: Attitude| attitude.inverse().apply(Vector::<Nav>::new(0.0, 0.0, 1.0)).v;
     let (a, b) = (down(truth), down(estimate));
     libm::atan2(a.cross(b).length(), a.dot(b))
-}
-
-/// Whether a filter reads it.
-pub fn reads(kind: SensorKind) -> bool {
-    [SensorKind::Gyro, SensorKind::Accel, SensorKind::Mag].contains(&kind)
 }
 
 /// Every filter that the scene's sensors can feed: each needs gyroscope and accelerometer.

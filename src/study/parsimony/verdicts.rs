@@ -4,6 +4,7 @@ use super::paired::{Finding, Paired};
 use super::parts::Part;
 use super::readings::{A_TENTH, Change, HALF_A_COUNT};
 use super::scores::{Run, Scores};
+use crate::sensor::SensorKind;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -116,10 +117,15 @@ impl FilterChange {
     }
 }
 
-/// Of every filter.
-pub fn filter_changes(runs: &[Run], with: &Scores, without: &Scores) -> Vec<FilterChange> {
+/// Of every filter that reads the sensor, if one is meant.
+pub fn filter_changes(
+    runs: &[Run],
+    sensor: Option<SensorKind>,
+    with: &Scores,
+    without: &Scores,
+) -> Vec<FilterChange> {
     let of = |(i, run): (usize, &Run)| FilterChange::new(run.name(), &with.of(i), &without.of(i));
-    runs.iter().enumerate().filter_map(of).collect()
+    runs.iter().enumerate().filter(|(_, run)| run.reads(sensor)).filter_map(of).collect()
 }
 
 /// The filter that decides: the one with the largest change in margins, of those with the gravest finding.
@@ -139,7 +145,6 @@ pub fn worst(filters: &[FilterChange]) -> Option<&FilterChange> {
 mod tests {
     use super::super::parts::What;
     use super::*;
-    use crate::sensor::SensorKind;
 
     fn part(name: &'static str) -> Part {
         Part { sensor: Some(SensorKind::Gyro), what: What::Term(name) }
