@@ -27,7 +27,7 @@ use crate::scene::Plan;
 use crate::schedule::{Schedule, Ticks};
 use crate::sensor::{
     Block, Fix, Measured, Measurement, Position, REFERENCE_TEMPERATURE, Reading, Senses, Sensor, SensorKind,
-    Shape,
+    SensorPlan, Shape,
 };
 use crate::time::SimTime;
 
@@ -97,10 +97,20 @@ impl<'a> Player<'a> {
 
     /// The same without the error terms named in `left_out`.
     pub fn without(plan: &'a Plan, end: SimTime, block: usize, left_out: &[&str]) -> Player<'a> {
+        Player::built(plan, end, block, |sensor| plan.build_without(sensor, left_out))
+    }
+
+    /// The same with each sensor as `build` makes it of its plan, such as one sensor without a term that others keep.
+    pub fn built(
+        plan: &'a Plan,
+        end: SimTime,
+        block: usize,
+        build: impl Fn(&SensorPlan) -> Sensor,
+    ) -> Player<'a> {
         let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
         let origin = plan.origin();
         let channels = plan.sensors.iter().map(|plan_of| {
-            let sensor = plan.build_without(plan_of, left_out);
+            let sensor = build(plan_of);
             let feed = Feed::new(plan_of, origin, plan.seed, &sensor);
             Channel { kind: plan_of.kind, origin, sensor, block: Block::default(), done: 0, feed }
         });

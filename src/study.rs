@@ -1,7 +1,8 @@
 //! Every method against every motion: how accurate, at what cost, and where it fails.
 //!
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
-//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory; [`normals`] compares ways to make its random numbers. All give rows for a table; time
+//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory; [`normals`] compares ways to make its random numbers.
+//! `parsimony` and `filters`, of the feature `filters`, say what a scene could do without and how filters do. All give rows for a table; time
 //! comes in as an argument.
 //!
 //! ```
@@ -19,6 +20,8 @@ mod inputs;
 pub mod motions;
 pub mod normals;
 
+#[cfg(feature = "filters")]
+pub mod parsimony;
 pub mod stability;
 
 pub use crate::parallel::{Progress, all_cores};

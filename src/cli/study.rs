@@ -5,6 +5,7 @@ mod allan;
 mod cost;
 mod normals;
 mod outcome;
+mod parsimony;
 mod stability;
 
 use super::{Refusal, Verdict, say, tell};
@@ -15,14 +16,14 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// accuracy, stability, cost, normals, allan or all (default); or the scene directly
+    /// accuracy, stability, cost, normals, allan, parsimony or all (default); or the scene directly
     study: Option<String>,
     /// A TOML file or the name of a built-in scene: adds its motion to the built-in ones, and measures its samples' cost
     scene: Option<String>,
     /// Write the numbers as CSV and JSON and the charts as SVG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Only motions A to D at 100 Hz and 1 kHz, a tenth of the drift steps, and few cost rounds
+    /// Only motions A to D at 100 Hz and 1 kHz, a tenth of the drift steps, few cost rounds, and few seeds
     #[arg(long)]
     quick: bool,
     /// Print every row as JSON on standard output
@@ -49,8 +50,8 @@ struct Request<'a> {
 }
 
 /// Every study, in the order of `all`.
-static STUDIES: [&Study; 5] =
-    [&accuracy::STUDY, &stability::STUDY, &cost::STUDY, &normals::STUDY, &allan::STUDY];
+static STUDIES: [&Study; 6] =
+    [&accuracy::STUDY, &stability::STUDY, &cost::STUDY, &normals::STUDY, &allan::STUDY, &parsimony::STUDY];
 
 /// For all of them.
 const ALL: &str = "all";

@@ -71,7 +71,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("listen", &["link", "wire", "clock", "sensor", "report", "interrupt"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
     ("dataset", &["player", "scene", "sensor", "motion", "parallel"]),
-    ("study", &["player", "motion", "scene", "sensor", "parallel", "os"]),
+    // Whether a scene needs a term is for the filters to say.
+    ("study", &["player", "motion", "scene", "sensor", "filters", "parallel", "os"]),
     ("parallel", &[]),
     (
         "cli",

@@ -63,10 +63,14 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
         "cost.csv",
         "cost.json",
         "cost.svg",
+        "lean.toml",
         "manifest.json",
         "normals.csv",
         "normals.json",
         "normals.svg",
+        "parsimony.csv",
+        "parsimony.json",
+        "parsimony.svg",
         "stability.csv",
         "stability.json",
         "stability.svg",
@@ -135,11 +139,11 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
     for (arguments, says) in [
         (
             &["acuracy"][..],
-            "`acuracy` is neither a study (accuracy, stability, cost, normals, allan, all) nor a scene, built in or a file; did you mean `accuracy`?",
+            "`acuracy` is neither a study (accuracy, stability, cost, normals, allan, parsimony, all) nor a scene, built in or a file; did you mean `accuracy`?",
         ),
         (
             &["acuracy", "coning"],
-            "`acuracy` is not a study (accuracy, stability, cost, normals, allan, all); did you mean `accuracy`?",
+            "`acuracy` is not a study (accuracy, stability, cost, normals, allan, parsimony, all); did you mean `accuracy`?",
         ),
         (&["coning", "still"], "`coning` is a scene, so `still` is a second one"),
         (&["accuracy", "nowhere.toml"], "neither a scene file"),
@@ -184,4 +188,88 @@ fn the_cost_of_a_scene_is_told_term_by_term() {
     let done = study(&["cost", quiet.to_str().unwrap(), "--quick", "--json"]).assert().success();
     let cost: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
     assert!(cost["ratio"].is_null() && cost["nine_axis_samples_per_s"].as_f64().unwrap() > 0.0, "{cost}");
+}
+
+/// Two sensors for three seconds: a bias that every filter notices, and a range that nothing reaches.
+const SHORT: &str = "name = \"short\"\nseed = 2\n[[motion]]\nkind = \"hold\"\nduration = \"1 s\"\n\
+     [[motion]]\nkind = \"rotate\"\nroll = \"20 deg/s\"\nduration = \"2 s\"\n\
+     [gyro]\npart = \"MPU-9250\"\nrate = \"50 Hz\"\nbias = \"[5, 0, 0] deg/s\"\nnonlinearity = \"0 %\"\n\
+     [accel]\nrate = \"50 Hz\"\nnoise_std = \"0.02 m/s^2\"\n";
+
+#[test]
+fn a_scene_is_told_what_it_needs_and_gets_a_leaner_one_that_plays() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (folder.path().join("short.toml"), folder.path().join("study"));
+    std::fs::write(&scene, SHORT).unwrap();
+    let arguments = ["parsimony", scene.to_str().unwrap(), "--quick", "--out", out.to_str().unwrap()];
+    let done = study(&arguments).assert().success();
+    let text = String::from_utf8(done.get_output().stdout.clone()).unwrap();
+    let line = |begins: &[&str]| {
+        let is_it = |line: &&str| line.split_whitespace().collect::<Vec<_>>().starts_with(begins);
+        text.lines().find(is_it).unwrap_or_else(|| panic!("{begins:?} in\n{text}")).to_string()
+    };
+    assert!(line(&["gyro", "bias"]).ends_with("needed"), "{text}");
+    assert!(line(&["gyro", "range"]).ends_with("below resolution"), "{text}");
+    assert!(text.contains("lean.toml has ") && text.contains("ns a nine-axis sample before"), "{text}");
+
+    let names = ["lean.toml", "manifest.json", "parsimony.csv", "parsimony.json", "parsimony.svg"];
+    assert_eq!(files(&out), names.map(String::from).into());
+    let (heading, rows) = rows(&out.join("parsimony.csv"));
+    assert_eq!(
+        heading,
+        [
+            "sensor",
+            "term",
+            "ns_per_sample",
+            "rms_counts",
+            "largest_counts",
+            "rms_of_noise",
+            "largest_of_noise",
+            "filter",
+            "change_deg",
+            "standard_error_deg",
+            "interval_deg",
+            "margin_deg",
+            "times_noticed",
+            "verdict",
+            "seeds_to_decide",
+        ]
+    );
+    let json = std::fs::read(out.join("parsimony.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let json = &json["parsimony"];
+    assert_eq!(json["rows"].as_array().unwrap().len(), rows.len());
+    // Four filters, each without a magnetometer.
+    assert_eq!(json["filters"][0].as_array().unwrap().len(), 4);
+    let kept = json["lean"]["kept"].as_array().unwrap();
+    assert!(
+        kept.iter().any(|name| name == "gyro.bias") && !kept.iter().any(|name| name == "gyro.range"),
+        "{json}"
+    );
+    for filter in json["lean"]["filters"].as_array().unwrap() {
+        let number = |field: &str| filter[field].as_f64().unwrap();
+        assert!(number("mean").abs() + number("half") <= number("margin_deg"), "{filter}");
+    }
+    let drawn = words_of_svg(&out.join("parsimony.svg"));
+    assert!(drawn.contains("gyro bias") && drawn.contains("below: nothing is noticed"), "{drawn}");
+
+    // It is a scene with exactly the terms that were kept.
+    let lean = out.join("lean.toml");
+    let mut check = Command::cargo_bin("ratetable").unwrap();
+    let checked = check.args(["check", lean.to_str().unwrap()]).assert().success();
+    let checked = String::from_utf8(checked.get_output().stdout.clone()).unwrap();
+    assert!(checked.starts_with("short-lean: 3 s"), "{checked}");
+    let mut play = Command::cargo_bin("ratetable").unwrap();
+    play.args(["generate", lean.to_str().unwrap(), "--out", folder.path().join("played").to_str().unwrap()]);
+    play.assert().success();
+}
+
+#[test]
+fn a_scene_that_no_filter_reads_is_judged_by_its_readings_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("still.toml");
+    std::fs::write(&scene, "duration = \"1 s\"\n[accel]\nrate = \"50 Hz\"\nbias = \"1 m/s^2\"\nrange = \"20 m/s^2\"\nresolution = \"0.01 m/s^2\"\n").unwrap();
+    let done = study(&["parsimony", scene.to_str().unwrap(), "--quick"]).assert().success();
+    let text = String::from_utf8(done.get_output().stdout.clone()).unwrap();
+    assert!(text.contains("no filter reads these sensors"), "{text}");
 }
