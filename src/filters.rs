@@ -15,6 +15,7 @@
 //! [`run`] passes a filter whole columns of readings; [`FilterKind::build`] gives one to feed by hand.
 
 mod complementary;
+mod eskf;
 mod fusion;
 mod held;
 mod vqf;
@@ -83,8 +84,8 @@ impl FilterKind {
 }
 
 /// Every filter.
-pub static FILTERS: [&FilterKind; 4] =
-    [&vqf::KIND, &fusion::KIND, &complementary::MADGWICK, &complementary::MAHONY];
+pub static FILTERS: [&FilterKind; 5] =
+    [&vqf::KIND, &fusion::KIND, &complementary::MADGWICK, &complementary::MAHONY, &eskf::KIND];
 
 /// After a filter's name: without the magnetometer.
 pub const SIX: &str = "-6d";

@@ -1,8 +1,9 @@
 //! Every method against every motion: how accurate, at what cost, and where it fails.
 //!
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
-//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory. All give rows for a table; time
-//! comes in as an argument.
+//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise
+//! beside theory; `filters` (with the feature of that name) measures attitude filters as the first two do methods. All
+//! give rows for a table; time comes in as an argument.
 //!
 //! ```
 //! use ratetable::{scene::Plan, study::allan};
@@ -15,6 +16,8 @@
 pub mod accuracy;
 pub mod allan;
 pub mod cost;
+#[cfg(feature = "filters")]
+pub mod filters;
 mod inputs;
 pub mod motions;
 
