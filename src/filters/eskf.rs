@@ -97,13 +97,14 @@ impl NominalStateFn<3> for Velocity {
     }
 }
 
-/// How far east of magnetic north a field in the body's axes points, rad.
+/// How far east of north a level vector in the body's axes points, rad. Of a level vector it depends on the heading
+/// alone: a field that is steep or disturbed tilts nothing.
 struct East([f64; 3]);
 
 impl NominalStateFn<1> for East {
     fn eval<S: Numeric>(&self, state: &NominalState<S>) -> [S; 1] {
-        let field = state.orientation().act(linear::Vector::new(self.0.map(S::from_f64)));
-        [field[1].atan2(field[0])]
+        let vector = state.orientation().act(linear::Vector::new(self.0.map(S::from_f64)));
+        [vector[1].atan2(vector[0])]
     }
 }
 
@@ -144,7 +145,10 @@ impl Filter for Eskf {
         if self.sum.seconds > 0.0 {
             self.step();
         }
-        let east = East(field.v.to_array());
+        let orientation = self.filter.nominal_state().orientation();
+        let [north, east, _] = *orientation.act(linear::Vector::new(field.v.to_array())).as_array();
+        let level = orientation.inverse().act(linear::Vector::new([north, east, 0.0]));
+        let east = East(*level.as_array());
         let [off] = east.eval(&self.filter.nominal_state());
         let noise = Matrix::from_diagonal([HEADING * HEADING]);
         let _ = self.filter.update_other(&east, linear::Vector::new([-off]), noise);

@@ -9,14 +9,15 @@
 //!
 //! ```
 //! use ratetable::filters::FILTERS;
-//! use ratetable::study::filters::{Effort, run, scenes};
+//! use ratetable::study::filters::{Effort, run, scenes, subjects};
 //! use std::time::Instant;
 //!
 //! let mut scenes = scenes::built_in(true)?;
 //! scenes.truncate(1);
 //! scenes[0].rates = vec![100];
 //! let start = Instant::now();
-//! let rows = run(&scenes, Effort { seeds: 1, threads: 1 }, &|| start.elapsed(), &|_, _| ())?;
+//! let effort = Effort { seeds: 1, threads: 1 };
+//! let rows = run(&scenes, &subjects(), effort, &|| start.elapsed(), &|_, _| ())?;
 //! assert_eq!(rows.len(), 2 * FILTERS.len());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -94,13 +95,14 @@ pub fn subjects() -> Vec<Subject> {
     [true, false].into_iter().flat_map(|with_mag| FILTERS.map(|kind| Subject { kind, with_mag })).collect()
 }
 
-/// Every filter on every scene at every rate; `now` is a clock that never goes back. A scene without a magnetometer
+/// Every one of `subjects` on every scene at every rate; `now` is a clock that never goes back. A scene without a magnetometer
 /// has the `-6d` filters alone. `progress` counts the runs of scenes.
 ///
 /// # Errors
 /// A scene that refuses one of its rates.
 pub fn run(
     scenes: &[Scene],
+    subjects: &[Subject],
     effort: Effort,
     now: &dyn Fn() -> Duration,
     progress: Progress,
@@ -108,7 +110,7 @@ pub fn run(
     let mut jobs = Vec::new();
     for scene in scenes {
         for &rate_hz in &scene.rates {
-            jobs.extend((0..effort.seeds).map(|seed| Job { scene, rate_hz, seed }));
+            jobs.extend((0..effort.seeds).map(|seed| Job { scene, subjects, rate_hz, seed }));
         }
     }
     // The longest first, so that no thread is left with one at the end.
@@ -130,6 +132,7 @@ pub fn run(
 /// One run of a scene at a rate.
 struct Job<'a> {
     scene: &'a Scene,
+    subjects: &'a [Subject],
     rate_hz: u32,
     seed: u64,
 }
@@ -147,8 +150,8 @@ impl Job<'_> {
         (self.scene.seconds() * f64::from(self.rate_hz)) as u64
     }
 
-    fn subjects(&self) -> Vec<Subject> {
-        subjects().into_iter().filter(|subject| self.scene.has_mag() || !subject.with_mag).collect()
+    fn subjects(&self) -> impl Iterator<Item = &Subject> {
+        self.subjects.iter().filter(|subject| self.scene.has_mag() || !subject.with_mag)
     }
 
     fn run(&self) -> Result<Ran, SceneError> {
@@ -161,7 +164,7 @@ impl Job<'_> {
         };
         let clip = |with_mag| Clip::new(&played.readings, with_mag, self.rate_hz);
         Ok(Ran {
-            errors: self.subjects().iter().map(error).collect(),
+            errors: self.subjects().map(error).collect(),
             clips: (self.seed == 0).then(|| [clip(true), clip(false)]),
         })
     }
@@ -185,7 +188,7 @@ impl Job<'_> {
                 ns_per_simulated_s: ns * f64::from(self.rate_hz),
             }
         };
-        self.subjects().iter().enumerate().map(row).collect()
+        self.subjects().enumerate().map(row).collect()
     }
 }
 

@@ -71,7 +71,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("listen", &["link", "wire", "clock", "sensor", "report", "interrupt"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
     ("dataset", &["player", "scene", "sensor", "motion", "parallel"]),
-    ("study", &["player", "motion", "scene", "sensor", "parallel", "os"]),
+    // Filters are measured as methods are.
+    ("study", &["player", "motion", "scene", "sensor", "parallel", "os", "filters"]),
     ("parallel", &[]),
     (
         "cli",

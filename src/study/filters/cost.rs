@@ -11,6 +11,9 @@ const UPDATES: usize = 1024;
 /// The least length of a batch.
 const BATCH: Duration = Duration::from_micros(200);
 
+/// A batch is no more rounds than this, even for a clock that stands still.
+const MOST_ROUNDS: u32 = 64;
+
 /// What a filter is fed, in order of time.
 #[derive(Clone, Copy, Debug)]
 enum Fed {
@@ -68,7 +71,7 @@ impl Clip {
             now().saturating_sub(start)
         };
         let mut rounds = 1;
-        while time(rounds) < BATCH && rounds < 1 << 20 {
+        while time(rounds) < BATCH && rounds < MOST_ROUNDS {
             rounds *= 2;
         }
         let best = (0..7).map(|_| time(rounds)).min().unwrap_or_default();

@@ -13,7 +13,7 @@ mod watch;
 pub use cases::CASES;
 pub use trials::{BIAS, Trial};
 
-use super::{Subject, subjects};
+use super::Subject;
 use crate::filters::{self, Options};
 use crate::geometry::Attitude;
 use crate::parallel::{self, Progress};
@@ -27,9 +27,9 @@ use watch::Watch;
 pub const STABLE: f64 = 2.0;
 /// The largest degraded error, degrees: past it a third of gravity is taken for an acceleration (sin 20 deg = 0.34).
 pub const FAILS: f64 = 20.0;
-/// How long a filter has to come back after a disturbance, s: ten times the slowest time constant by which these
-/// filters follow the accelerometer (3 s, VQF's), three times that of VQF's heading.
-pub const COME_BACK: f64 = 30.0;
+/// How long a filter has to come back after a disturbance, s: as long as VQF by its own default rejects a field at most,
+/// and twenty times the slowest time constant by which these filters follow the accelerometer (3 s, VQF's).
+pub const COME_BACK: f64 = 60.0;
 
 /// A line of `filters-stability.csv`; the fields are its columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -76,23 +76,22 @@ pub struct Case {
 /// How much of it is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// How often the minute of the long case is repeated.
-    pub minutes: u64,
+    /// How often the hundred seconds of the long case are repeated.
+    pub rounds: u64,
 }
 
 impl Effort {
     /// A day.
-    pub const FULL: Effort = Effort { minutes: 24 * 60 };
+    pub const FULL: Effort = Effort { rounds: 864 };
     /// Ten minutes.
-    pub const QUICK: Effort = Effort { minutes: 10 };
+    pub const QUICK: Effort = Effort { rounds: 6 };
 }
 
 /// Takes a trial's readings and says each attitude, as [`filters::run`] does.
 pub type Estimator<'a> = &'a dyn Fn(&Trial, &mut dyn FnMut(SimTime, Attitude));
 
-/// Every filter through every case that concerns it, with `threads` threads.
-pub fn run(effort: Effort, threads: usize, progress: Progress) -> Vec<Row> {
-    let subjects = subjects();
+/// Every one of `subjects` through every case that concerns it, with `threads` threads.
+pub fn run(subjects: &[Subject], effort: Effort, threads: usize, progress: Progress) -> Vec<Row> {
     let jobs: Vec<(&Case, &Subject)> = CASES
         .iter()
         .flat_map(|case| subjects.iter().map(move |subject| (case, subject)))

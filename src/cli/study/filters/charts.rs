@@ -1,11 +1,12 @@
 //! The pictures.
 
-use super::{median, names};
+use super::{median, names, tried};
+use crate::filters::SIX;
 use crate::report::chart::{self, Cell, Grid, LogLog};
 use crate::report::number;
 use crate::study::filters::scenes::Scene;
 use crate::study::filters::stability::{self, CASES, COME_BACK, FAILS, STABLE, Verdict};
-use crate::study::filters::{Row, START_UP, subjects};
+use crate::study::filters::{Row, START_UP};
 
 /// Below this an error is that of the sensors, degrees.
 const FLOOR: f64 = 1e-3;
@@ -47,7 +48,7 @@ fn span(rows: &[Row]) -> String {
 
 /// Verdicts, a row a case, a column a filter.
 pub(super) fn verdicts(rows: &[stability::Row]) -> String {
-    let columns: Vec<String> = subjects().iter().map(|subject| subject.name()).collect();
+    let columns = tried(rows);
     let cell = |case: &str, filter: &str| {
         let found = rows.iter().find(|row| row.case == case && row.filter == filter);
         found.map_or_else(Cell::default, |row| Cell { verdict: verdict(row.verdict), figure: figure(row) })
@@ -62,7 +63,7 @@ pub(super) fn verdicts(rows: &[stability::Row]) -> String {
             "stable within {STABLE} deg; a figure is the largest error; ! is the error {COME_BACK} s after; # is the first reading past {FAILS} deg or without a number"
         ),
         rows: CASES.iter().map(row).collect(),
-        columns,
+        columns: columns.iter().map(ToString::to_string).collect(),
     })
 }
 
@@ -88,32 +89,57 @@ fn verdict(verdict: Verdict) -> chart::Verdict {
 /// Cost of an update against error, the medians over the scenes at the rate with the least error; a point a filter.
 pub(super) fn glance(rows: &[Row]) -> String {
     let point = |name: &&str| {
-        let (rate, cost, error) = at_best(rows, name)?;
-        Some(chart::Method { name: format!("{name} {rate} Hz"), points: vec![(cost, error)] })
+        let best = at_best(rows, name)?;
+        Some(chart::Point {
+            name: format!("{name}, {} Hz", best.rate_hz),
+            group: usize::from(name.ends_with(SIX)),
+            x: best.ns_per_update,
+            y: best.error_deg,
+            spread: Some(best.range_deg),
+        })
     };
-    chart::loglog(&LogLog {
+    chart::points(&chart::Points {
         title: "Attitude filters at a glance".into(),
-        subtitle: "medians over the scenes, each filter at its best rate".into(),
+        subtitle: "medians over the scenes, each filter at the rate with its least error".into(),
         x_label: "cost (ns per update)".into(),
         y_label: "RMS error (deg)".into(),
         y_floor: Some(FLOOR),
-        motions: vec![chart::Motion {
-            title: String::new(),
-            methods: names(rows).iter().filter_map(point).collect(),
-        }],
+        groups: vec!["with magnetometer".into(), "without, heading as drift".into()],
+        points: names(rows).iter().filter_map(point).collect(),
+        notes: vec![
+            "bars: from the scene with the least error to the one with the largest".into(),
+            "drift and heading are not alike: compare within a colour".into(),
+        ],
+        ..chart::Points::default()
     })
 }
 
-/// The rate at which a filter's median error over the scenes is least, with the median cost and that error. A rate at
-/// which it loses itself in a scene does not count.
-pub(super) fn at_best(rows: &[Row], filter: &str) -> Option<(u32, f64, f64)> {
+/// A filter at the rate with the least error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Best {
+    pub rate_hz: u32,
+    /// The median over the scenes.
+    pub ns_per_update: f64,
+    /// The median over the scenes.
+    pub error_deg: f64,
+    /// Of the best scene and of the worst.
+    pub range_deg: (f64, f64),
+}
+
+/// The rate at which a filter's median error over the scenes is least. One at which it loses itself in a scene does
+/// not count.
+pub(super) fn at_best(rows: &[Row], filter: &str) -> Option<Best> {
     let mut rates: Vec<u32> = rows.iter().map(|row| row.rate_hz).collect();
     rates.sort_unstable();
     rates.dedup();
-    let at = |rate: u32| {
-        let of = || rows.iter().filter(move |row| row.filter == filter && row.rate_hz == rate);
-        let errors: Option<Vec<f64>> = of().map(|row| row.error_deg).collect();
-        Some((rate, median(of().map(|row| row.ns_per_update).collect())?, median(errors?)?))
+    let at = |rate_hz: u32| {
+        let of = || rows.iter().filter(move |row| row.filter == filter && row.rate_hz == rate_hz);
+        let errors: Vec<f64> = of().map(|row| row.error_deg).collect::<Option<_>>()?;
+        let range_deg = errors
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(least, most), &error| (least.min(error), most.max(error)));
+        let ns_per_update = median(of().map(|row| row.ns_per_update).collect())?;
+        Some(Best { rate_hz, ns_per_update, error_deg: median(errors)?, range_deg })
     };
-    rates.into_iter().filter_map(at).min_by(|a, b| a.2.total_cmp(&b.2))
+    rates.into_iter().filter_map(at).min_by(|a, b| a.error_deg.total_cmp(&b.error_deg))
 }

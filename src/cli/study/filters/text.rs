@@ -1,7 +1,8 @@
 //! The tables for people.
 
-use super::{median, names};
+use super::{median, names, tried};
 use crate::cli::terminal::Stream;
+use crate::filters::SIX;
 use crate::report::number;
 use crate::study::filters::scenes::Scene;
 use crate::study::filters::stability::{self, CASES, COME_BACK, FAILS, STABLE, Verdict};
@@ -57,7 +58,7 @@ fn degrees(error: Option<f64>) -> String {
 fn best(rows: &[Row], scenes: &[Scene]) -> String {
     let least = |scene: &Scene, is_six: bool, of: fn(&Row) -> Option<f64>| {
         let tried = rows.iter().filter(|row| row.scene == scene.name);
-        let tried = tried.filter(|row| row.filter.ends_with(crate::filters::SIX) == is_six);
+        let tried = tried.filter(|row| row.filter.ends_with(SIX) == is_six);
         let known = tried.filter_map(|row| of(row).map(|error| (row, error)));
         let best = known.min_by(|a, b| a.1.total_cmp(&b.1));
         best.map_or("-".to_string(), |(row, error)| {
@@ -81,9 +82,6 @@ fn best(rows: &[Row], scenes: &[Scene]) -> String {
 fn verdicts(rows: &[stability::Row]) -> String {
     let numbers: Vec<_> = (1..=CASES.len()).map(|n| n.to_string()).collect();
     let heading: Vec<_> = ["filter"].into_iter().chain(numbers.iter().map(String::as_str)).collect();
-    let mut filters: Vec<&str> = rows.iter().map(|row| row.filter.as_str()).collect();
-    let mut seen = std::collections::BTreeSet::new();
-    filters.retain(|filter| seen.insert(*filter));
     let line = |filter: &&str| {
         let sign = |case: &stability::Case| {
             let row = rows.iter().find(|row| row.filter == **filter && row.case == case.name);
@@ -91,7 +89,7 @@ fn verdicts(rows: &[stability::Row]) -> String {
         };
         [filter.to_string()].into_iter().chain(CASES.iter().map(sign)).collect()
     };
-    let lines: Vec<_> = filters.iter().map(line).collect();
+    let lines: Vec<_> = tried(rows).iter().map(line).collect();
     let about = CASES.iter().zip(&numbers).map(|(case, n)| format!("{n:>2} {}: {}\n", case.name, case.about));
     format!(
         "\nwhere filters fail: . within {STABLE} deg, ~ degraded, ! not back {COME_BACK} s after, X fails ({FAILS} deg, no number)\n{}\n{}",

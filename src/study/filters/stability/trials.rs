@@ -15,7 +15,7 @@ const GRAVITY: f64 = 9.80665;
 /// The field in North-East-Down, µT: as at a latitude of 55 degrees.
 const FIELD: DVec3 = DVec3::new(20.0, 0.0, 45.0);
 /// What a calibration leaves of the gyro's bias, deg/s.
-pub const BIAS: DVec3 = DVec3::new(0.3, -0.2, 0.1);
+pub const BIAS: DVec3 = DVec3::new(0.1, -0.1, 0.05);
 /// How long a filter that finds its start by itself is shown the wrong one, s.
 const BEFORE: i64 = 1;
 
