@@ -22,7 +22,7 @@ pub struct Arguments {
     /// Write the numbers as CSV and JSON and the charts as SVG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Fewer motions, scenes and seeds at 100 Hz and 1 kHz, a tenth of the drift steps, and few cost rounds
+    /// Fewer motions, scenes, filters and seeds at 100 Hz and 1 kHz, a tenth of the drift steps, and few cost rounds
     #[arg(long)]
     quick: bool,
     /// Print every row as JSON on standard output

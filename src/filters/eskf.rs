@@ -4,7 +4,8 @@
 //! It works in North-East-Down on Forward-Right-Down vectors. The crate has the filter and no sensors: what aids it is
 //! ours, as is its noise, for which the crate has no defaults. Ten times a second it is told that it stands still, give
 //! or take [`STILL`], which is how a controller's filter keeps level without a receiver of positions; and with each
-//! reading of the magnetometer, that magnetic north is where the level part of the field points. Readings of the gyro
+//! reading of the magnetometer, that magnetic north is where the level part of the field points, off by [`MOST`] at
+//! most. It trusts its start to six degrees, and nothing resets it. Readings of the gyro
 //! are summed up to [`STEP`] before the filter takes a step, as controllers do, because a step costs two products of
 //! 15 × 15 matrices; the attitude follows every reading.
 
@@ -21,8 +22,8 @@ use multicalc::spatial::{Quaternion, SO3};
 const G: f64 = 9.80665;
 /// White noise of the gyro, rad/s/√Hz: six times that of an MPU-9250, which leaves room for scale and vibration.
 const GYRO_NOISE: f64 = 1e-3;
-/// White noise of the accelerometer, m/s²/√Hz: vibration counts as noise.
-const ACCEL_NOISE: f64 = 0.05;
+/// White noise of the accelerometer, m/s²/√Hz: that of a multirotor's vibration (0.002 g²/Hz is 0.44).
+const ACCEL_NOISE: f64 = 0.35;
 /// How a gyro's bias wanders, rad/s/√s.
 const GYRO_WALK: f64 = 2e-5;
 /// How an accelerometer's bias wanders, m/s²/√s.
@@ -33,8 +34,10 @@ const STEP: f64 = 0.008;
 const STILL: f64 = 1.0;
 /// The interval of being told so, s.
 const STILL_EVERY: f64 = 0.1;
-/// Noise of the magnetic heading, rad.
-const HEADING: f64 = 0.05;
+/// Noise of the magnetic heading, rad: PX4's default, for what is wrong with a field lasts longer than a reading.
+const HEADING: f64 = 0.3;
+/// The most that a reading of the magnetometer may be off, rad: more counts as this.
+const MOST: f64 = 0.3;
 /// Standard deviations at the start: position (m), velocity (m/s), attitude (rad), biases (rad/s, m/s²). A tilt at
 /// rest and a bias of the accelerometer look the same, so the bias starts small.
 const START: [f64; 5] = [1.0, 0.5, 0.1, 0.05, 0.02];
@@ -97,14 +100,13 @@ impl NominalStateFn<3> for Velocity {
     }
 }
 
-/// How far east of north a level vector in the body's axes points, rad. Of a level vector it depends on the heading
-/// alone: a field that is steep or disturbed tilts nothing.
+/// How far east of magnetic north a field in the body's axes points, rad.
 struct East([f64; 3]);
 
 impl NominalStateFn<1> for East {
     fn eval<S: Numeric>(&self, state: &NominalState<S>) -> [S; 1] {
-        let vector = state.orientation().act(linear::Vector::new(self.0.map(S::from_f64)));
-        [vector[1].atan2(vector[0])]
+        let field = state.orientation().act(linear::Vector::new(self.0.map(S::from_f64)));
+        [field[1].atan2(field[0])]
     }
 }
 
@@ -145,13 +147,10 @@ impl Filter for Eskf {
         if self.sum.seconds > 0.0 {
             self.step();
         }
-        let orientation = self.filter.nominal_state().orientation();
-        let [north, east, _] = *orientation.act(linear::Vector::new(field.v.to_array())).as_array();
-        let level = orientation.inverse().act(linear::Vector::new([north, east, 0.0]));
-        let east = East(*level.as_array());
+        let east = East(field.v.to_array());
         let [off] = east.eval(&self.filter.nominal_state());
         let noise = Matrix::from_diagonal([HEADING * HEADING]);
-        let _ = self.filter.update_other(&east, linear::Vector::new([-off]), noise);
+        let _ = self.filter.update_other(&east, linear::Vector::new([(-off).clamp(-MOST, MOST)]), noise);
     }
 
     fn attitude(&self) -> Attitude {

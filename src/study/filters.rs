@@ -8,7 +8,6 @@
 //! [`stability`] tries what breaks filters.
 //!
 //! ```
-//! use ratetable::filters::FILTERS;
 //! use ratetable::study::filters::{Effort, run, scenes, subjects};
 //! use std::time::Instant;
 //!
@@ -17,8 +16,8 @@
 //! scenes[0].rates = vec![100];
 //! let start = Instant::now();
 //! let effort = Effort { seeds: 1, threads: 1 };
-//! let rows = run(&scenes, &subjects(), effort, &|| start.elapsed(), &|_, _| ())?;
-//! assert_eq!(rows.len(), 2 * FILTERS.len());
+//! let rows = run(&scenes, &subjects()[..2], effort, &|| start.elapsed(), &|_, _| ())?;
+//! assert_eq!((rows.len(), rows[0].filter.as_str()), (2, "vqf"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

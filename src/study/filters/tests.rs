@@ -21,7 +21,7 @@ fn error(played: &Played, subject: &Subject, start: Option<Attitude>, from: i64)
 
 #[test]
 fn at_rest_without_noise_every_filter_converges_to_the_truth() {
-    let played = played("duration = \"90 s\"\n[start]\nroll = \"20 deg\"\nyaw = \"50 deg\"");
+    let played = played("duration = \"90 s\"\n[start]\nattitude = \"[20, 0, 50] deg\"");
     assert_eq!((played.truth.len(), played.readings.mag.len()), (4500, 4500));
     let tilted = Euler { roll: 0.2, pitch: 0.1, yaw: 1.1 }.to_quat();
     for subject in subjects() {
