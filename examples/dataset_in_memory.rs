@@ -4,6 +4,7 @@
 
 #![expect(clippy::print_stdout, reason = "an example says what it found")]
 
+use ratetable::motion::Wants;
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::Builder;
 use ratetable::sensor::SensorKind;
@@ -17,10 +18,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (mut rate, mut truth) = (Vec::new(), Vec::new());
     let mut player = Player::new(&plan, plan.duration, BLOCK);
-    while let Some(columns) = player.play_columns(ratetable::motion::Wants::NONE) {
+    while let Some(columns) = player.play_columns(Wants { attitude: true, ..Wants::NONE }) {
         // One column an axis: z of the gyroscope, rad/s.
         rate.extend_from_slice(&columns.sensor(0).reading[2]);
-        truth.extend(columns.truth.iter().map(|truth| (truth.t, truth.attitude)));
+        truth.extend((0..columns.truth.len()).map(|i| (columns.truth.t[i], columns.truth.attitude(i))));
     }
 
     // The simplest of filters: add up the angular rate.

@@ -11,8 +11,11 @@
 //! assert_eq!((filter.name, with_mag), ("vqf", false));
 //! # Ok::<(), &str>(())
 //! ```
+//!
+//! [`run`] passes a filter whole columns of readings; [`FilterKind::build`] gives one to feed by hand.
 
 mod complementary;
+mod eskf;
 mod fusion;
 mod held;
 mod vqf;
@@ -24,7 +27,7 @@ use std::collections::VecDeque;
 
 /// A filter that takes each reading as it comes; several of one instant in the order gyro, accelerometer,
 /// magnetometer.
-trait Filter {
+pub trait Filter {
     /// Angular rate, rad/s, `dt` seconds after the one before (0 for the first).
     fn gyro(&mut self, dt: f64, rate: Vector<Body>);
     /// Specific force, m/s².
@@ -36,17 +39,30 @@ trait Filter {
 }
 
 /// What a filter is made for.
-struct Setup {
+#[derive(Clone, Copy, Debug)]
+pub struct Setup {
     /// The nominal interval of the gyro, s.
-    gyro_s: f64,
+    pub gyro_s: f64,
     /// Of the accelerometer.
-    accel_s: f64,
+    pub accel_s: f64,
     /// Of the magnetometer.
-    mag_s: f64,
+    pub mag_s: f64,
     /// Whether there is a magnetometer to go by.
-    has_mag: bool,
-    /// The attitude that the first readings show, from magnetic north, or from where it starts without a magnetometer.
-    start: Attitude,
+    pub has_mag: bool,
+    /// Where it starts: the attitude that the first readings show unless another is given; from magnetic north, or
+    /// from any heading without a magnetometer. A filter that does not [take it](FilterKind::takes_start) finds its own.
+    pub start: Attitude,
+}
+
+/// How a filter is run over readings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Whether it gets the magnetometer's readings.
+    pub with_mag: bool,
+    /// How far east of true north the field points, rad.
+    pub declination: f64,
+    /// Where it starts, from true north; what the first readings show unless given.
+    pub start: Option<Attitude>,
 }
 
 /// A kind of filter.
@@ -55,12 +71,21 @@ pub struct FilterKind {
     pub name: &'static str,
     /// One line of help.
     pub about: &'static str,
-    build: fn(&Setup) -> Box<dyn Filter>,
+    /// Whether it starts at the attitude of its [`Setup`]; else it looks for its start by itself.
+    pub takes_start: bool,
+    make: fn(&Setup) -> Box<dyn Filter>,
+}
+
+impl FilterKind {
+    /// A filter of this kind, to be fed by hand.
+    pub fn build(&self, setup: &Setup) -> Box<dyn Filter> {
+        (self.make)(setup)
+    }
 }
 
 /// Every filter.
-pub static FILTERS: [&FilterKind; 4] =
-    [&vqf::KIND, &fusion::KIND, &complementary::MADGWICK, &complementary::MAHONY];
+pub static FILTERS: [&FilterKind; 5] =
+    [&vqf::KIND, &fusion::KIND, &complementary::MADGWICK, &complementary::MAHONY, &eskf::KIND];
 
 /// After a filter's name: without the magnetometer.
 pub const SIX: &str = "-6d";
@@ -112,15 +137,10 @@ impl Readings {
 }
 
 /// Runs a filter over readings: the attitude after each instant at which the gyro was read, from true north if the
-/// magnetometer is used (`declination`, rad, positive where the field points east of it), else from where it starts.
-pub fn run(
-    kind: &FilterKind,
-    readings: &Readings,
-    with_mag: bool,
-    declination: f64,
-) -> Vec<(SimTime, Attitude)> {
+/// magnetometer is used, else from where it starts.
+pub fn run(kind: &FilterKind, readings: &Readings, options: &Options) -> Vec<(SimTime, Attitude)> {
     let mut attitudes = Vec::with_capacity(readings.gyro.len());
-    run_as_read(kind, readings.streams(), with_mag, declination, |t, attitude| attitudes.push((t, attitude)));
+    run_as_read(kind, readings.streams(), options, |t, attitude| attitudes.push((t, attitude)));
     attitudes
 }
 
@@ -128,25 +148,25 @@ pub fn run(
 pub fn run_as_read(
     kind: &FilterKind,
     streams: Streams<'_>,
-    with_mag: bool,
-    declination: f64,
+    options: &Options,
     mut each: impl FnMut(SimTime, Attitude),
 ) {
     let none: Stream<'_> = Box::new(std::iter::empty());
-    let mag = if with_mag { streams.mag } else { none };
+    let mag = if options.with_mag { streams.mag } else { none };
     let [mut gyro, mut accel, mut mag] =
         [Ahead::new(streams.gyro), Ahead::new(streams.accel), Ahead::new(mag)];
     let (Some((_, force)), Some((first, _))) = (accel.peek(), gyro.peek()) else { return };
     let has_mag = mag.peek().is_some();
+    let north = if has_mag { exp(DVec3::Z * options.declination) } else { DQuat::IDENTITY };
+    let given = options.start.map(|start| Attitude::from_quat(north.conjugate() * start.q));
     let setup = Setup {
         gyro_s: gyro.period(),
         accel_s: accel.period(),
         mag_s: mag.period(),
         has_mag,
-        start: start(force, mag.peek().map(|(_, field)| field)),
+        start: given.unwrap_or_else(|| start(force, mag.peek().map(|(_, field)| field))),
     };
-    let north = if has_mag { exp(DVec3::Z * declination) } else { DQuat::IDENTITY };
-    let mut filter = (kind.build)(&setup);
+    let mut filter = kind.build(&setup);
     let mut last = first;
     while let Some((t, rate)) = gyro.next() {
         filter.gyro((t - last).seconds(), rate);

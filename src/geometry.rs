@@ -10,11 +10,13 @@
 //! let force = Vector::<Body>::new(0.0, 0.0, -9.8) + Vector::<Nav>::new(0.0, 0.0, 9.8);
 //! ```
 
+mod attitude_error;
 mod axes;
 mod euler;
 mod euler_sequence;
 mod rotation;
 
+pub use attitude_error::AttitudeError;
 pub use axes::Axes;
 pub use euler::Euler;
 pub use euler_sequence::EulerSequence;

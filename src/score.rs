@@ -26,7 +26,6 @@ mod bench;
 mod clock;
 mod correlate;
 mod delay;
-mod error;
 mod figures;
 mod file;
 mod given;
@@ -42,8 +41,8 @@ mod stamped;
 mod track;
 mod turn;
 
+pub use crate::geometry::AttitudeError;
 pub use align::Align;
-pub use error::AttitudeError;
 pub use figures::{Aligned, DelayKnown, Errors, Figures, Fitted};
 pub use file::{FileError, Reading, Recorded, read, read_as};
 pub use given::{Clock, Delay, HeldAt, Options, Row, Timed, Truth};

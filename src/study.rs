@@ -1,9 +1,10 @@
 //! Every method against every motion: how accurate, at what cost, and where it fails.
 //!
 //! [`accuracy`] measures the attitude error of each method at each rate beside the nanoseconds it takes;
-//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`allan`] shows its sensors' noise beside theory; [`normals`] compares ways to make its random numbers.
-//! `parsimony` and `filters`, of the feature `filters`, say what a scene could do without and how filters do. All give rows for a table; time
-//! comes in as an argument.
+//! [`stability`] tries what breaks methods; [`cost`] says what a scene's samples cost; [`normals`] compares ways to make
+//! its random numbers; [`allan`] shows its sensors' noise beside theory. With the feature `filters`, `filters` measures
+//! attitude filters as the first two do methods, and `parsimony` says what a scene could do without. All give rows for
+//! a table; time comes in as an argument.
 //!
 //! ```
 //! use ratetable::{scene::Plan, study::allan};
@@ -16,6 +17,8 @@
 pub mod accuracy;
 pub mod allan;
 pub mod cost;
+#[cfg(feature = "filters")]
+pub mod filters;
 mod inputs;
 pub mod motions;
 pub mod normals;

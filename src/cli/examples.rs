@@ -97,6 +97,8 @@ Examples:
   ratetable study accuracy --quick
   # everything, with charts
   ratetable study all --out study
+  # attitude filters, on a scene of yours as well
+  ratetable study filters table-1 --quick
   # what a sample of a scene costs
   ratetable study cost table-1
   # the Allan deviation of its sensors

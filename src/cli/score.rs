@@ -27,7 +27,7 @@ pub struct Arguments {
     /// A dataset folder, or a file of time and attitude like an estimate's
     truth: PathBuf,
     /// Files of time and attitude (a table with a header, a TUM trajectory, a PX4 ULog), or filters to run on the
-    /// dataset: vqf, fusion, madgwick, mahony, each also with -6d (no magnetometer)
+    /// dataset: vqf, fusion, madgwick, mahony, eskf, each also with -6d (no magnetometer)
     #[arg(required = true)]
     estimate: Vec<String>,
     /// What to remove from each estimate before scoring

@@ -3,6 +3,7 @@
 mod accuracy;
 mod allan;
 mod cost;
+mod filters;
 mod normals;
 mod outcome;
 mod parsimony;
@@ -16,14 +17,14 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// accuracy, stability, cost, normals, allan, parsimony or all (default); or the scene directly
+    /// accuracy, stability, filters, cost, normals, allan, parsimony or all (default); or the scene directly
     study: Option<String>,
-    /// A TOML file or the name of a built-in scene: adds its motion to the built-in ones, and measures its samples' cost
+    /// A TOML file or the name of a built-in scene: joins the built-in motions and scenes, and its samples' cost is measured
     scene: Option<String>,
     /// Write the numbers as CSV and JSON and the charts as SVG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Only motions A to D at 100 Hz and 1 kHz, a tenth of the drift steps, few cost rounds, and few seeds
+    /// Fewer motions, scenes, filters and seeds at 100 Hz and 1 kHz, a tenth of the drift steps, and few cost rounds
     #[arg(long)]
     quick: bool,
     /// Print every row as JSON on standard output
@@ -47,11 +48,20 @@ struct Study {
 struct Request<'a> {
     quick: bool,
     scene: Option<&'a Plan>,
+    /// What the user calls the scene: a file or a built-in name.
+    source: Option<&'a str>,
 }
 
 /// Every study, in the order of `all`.
-static STUDIES: [&Study; 6] =
-    [&accuracy::STUDY, &stability::STUDY, &cost::STUDY, &normals::STUDY, &allan::STUDY, &parsimony::STUDY];
+static STUDIES: [&Study; 7] = [
+    &accuracy::STUDY,
+    &stability::STUDY,
+    &filters::STUDY,
+    &cost::STUDY,
+    &normals::STUDY,
+    &allan::STUDY,
+    &parsimony::STUDY,
+];
 
 /// For all of them.
 const ALL: &str = "all";
@@ -65,7 +75,7 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
         });
         dataset::may_write(dir, arguments.force, Holds::Study, &names.collect::<Vec<_>>())?;
     }
-    let request = Request { quick: arguments.quick, scene: plan.as_ref() };
+    let request = Request { quick: arguments.quick, scene: plan.as_ref(), source: scene };
     let outcomes = studies.iter().map(|study| (study.run)(&request)).collect::<Result<Vec<_>, _>>()?;
     if let Some(dir) = &arguments.out {
         let mut files: Vec<(String, Vec<u8>)> = Vec::new();

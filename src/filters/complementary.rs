@@ -14,13 +14,15 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 pub(super) static MADGWICK: FilterKind = FilterKind {
     name: "madgwick",
     about: "Madgwick 2011: gradient descent, gain 0.1; no gyro bias",
-    build: |setup| boxed(Madgwick::new_with_quat(setup.gyro_s, 0.1, start(setup)), setup),
+    takes_start: true,
+    make: |setup| boxed(Madgwick::new_with_quat(setup.gyro_s, 0.1, start(setup)), setup),
 };
 
 pub(super) static MAHONY: FilterKind = FilterKind {
     name: "mahony",
     about: "Mahony 2008: complementary on SO(3), gains 0.5 and 0; no gyro bias",
-    build: |setup| boxed(Mahony::new_with_quat(setup.gyro_s, 0.5, 0.0, start(setup)), setup),
+    takes_start: true,
+    make: |setup| boxed(Mahony::new_with_quat(setup.gyro_s, 0.5, 0.0, start(setup)), setup),
 };
 
 fn boxed<F: Ahrs<f64> + 'static>(filter: F, setup: &Setup) -> Box<dyn Filter> {

@@ -16,10 +16,11 @@ const G: f64 = 9.80665;
 pub(super) static KIND: FilterKind = FilterKind {
     name: "fusion",
     about: "x-io Fusion (revised Madgwick): rejection of accelerations; f32",
-    build,
+    takes_start: true,
+    make,
 };
 
-fn build(setup: &Setup) -> Box<dyn Filter> {
+fn make(setup: &Setup) -> Box<dyn Filter> {
     let settings = AhrsSettings {
         convention: Convention::Ned,
         sample_rate: (1.0 / setup.gyro_s) as f32,

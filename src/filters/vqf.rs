@@ -12,7 +12,8 @@ use vqf_rs::VQF;
 pub(super) static KIND: FilterKind = FilterKind {
     name: "vqf",
     about: "VQF (Laidig and Seel 2023): gyro bias estimation, rejection of magnetic disturbances; f64",
-    build: |setup| {
+    takes_start: false,
+    make: |setup| {
         let filter = VQF::new(setup.gyro_s, Some(setup.accel_s), Some(setup.mag_s), None);
         Box::new(Vqf { filter, has_mag: setup.has_mag })
     },

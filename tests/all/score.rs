@@ -190,7 +190,7 @@ fn what_cannot_be_scored_is_told_in_one_message_each() {
     for (arguments, says) in [
         (
             vec!["vqd"],
-            "`vqd` is neither a file nor a filter (vqf, fusion, madgwick, mahony, each also with -6d); did you mean `vqf`?",
+            "`vqd` is neither a file nor a filter (vqf, fusion, madgwick, mahony, eskf, each also with -6d); did you mean `vqf`?",
         ),
         (vec![empty.as_str()], "is empty"),
         (

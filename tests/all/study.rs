@@ -64,6 +64,12 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
         "cost.json",
         "cost.svg",
         "lean.toml",
+        "filters-glance.svg",
+        "filters-stability.csv",
+        "filters-stability.svg",
+        "filters.csv",
+        "filters.json",
+        "filters.svg",
         "manifest.json",
         "normals.csv",
         "normals.json",
@@ -139,11 +145,11 @@ fn a_word_that_is_neither_a_study_nor_a_scene_is_refused_and_so_is_a_bad_scene()
     for (arguments, says) in [
         (
             &["acuracy"][..],
-            "`acuracy` is neither a study (accuracy, stability, cost, normals, allan, parsimony, all) nor a scene, built in or a file; did you mean `accuracy`?",
+            "`acuracy` is neither a study (accuracy, stability, filters, cost, normals, allan, parsimony, all) nor a scene, built in or a file; did you mean `accuracy`?",
         ),
         (
             &["acuracy", "coning"],
-            "`acuracy` is not a study (accuracy, stability, cost, normals, allan, parsimony, all); did you mean `accuracy`?",
+            "`acuracy` is not a study (accuracy, stability, filters, cost, normals, allan, parsimony, all); did you mean `accuracy`?",
         ),
         (&["coning", "still"], "`coning` is a scene, so `still` is a second one"),
         (&["accuracy", "nowhere.toml"], "neither a scene file"),
@@ -272,4 +278,48 @@ fn a_scene_that_no_filter_reads_is_judged_by_its_readings_and_says_so() {
     let done = study(&["parsimony", scene.to_str().unwrap(), "--quick"]).assert().success();
     let text = String::from_utf8(done.get_output().stdout.clone()).unwrap();
     assert!(text.contains("no filter reads these sensors"), "{text}");
+}
+
+#[test]
+fn filters_are_measured_on_scenes_and_through_what_breaks_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    let arguments = ["filters", "coning-mems", "--quick", "--json", "--out", out.to_str().unwrap()];
+    let done = study(&arguments).assert().success();
+    let results: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    let names = [
+        "filters-glance.svg",
+        "filters-stability.csv",
+        "filters-stability.svg",
+        "filters.csv",
+        "filters.json",
+        "filters.svg",
+        "manifest.json",
+    ];
+    assert_eq!(files(&out), names.map(String::from).into());
+    let (table, grid) = (out.join("filters.csv"), out.join("filters-stability.csv"));
+    assert_eq!(results["filters"].as_array().unwrap().len(), rows(&table).1.len());
+    assert_eq!(results["filters_stability"].as_array().unwrap().len(), rows(&grid).1.len());
+    let filters = ["vqf", "fusion", "madgwick", "mahony"];
+    let filters = filters.into_iter().flat_map(|name| [name.to_string(), format!("{name}-6d")]).collect();
+    assert_eq!(column(&table, "filter"), filters);
+    assert_eq!(column(&grid, "filter"), filters);
+    let scenes = ["still", "level-then-turn", "magnetic-disturbance", "coning-mems"].map(String::from);
+    assert_eq!(column(&table, "scene"), scenes.clone().into(), "the scene joins the built-in ones");
+    assert_eq!(column(&table, "rate_hz"), ["100", "1000"].map(String::from).into());
+    for row in results["filters"].as_array().unwrap() {
+        assert!(
+            row["error_deg"].as_f64().unwrap() > 0.0 && row["ns_per_update"].as_f64().unwrap() > 0.0,
+            "{row}"
+        );
+    }
+    let drawn = words_of_svg(&out.join("filters.svg"));
+    assert!(scenes.iter().all(|scene| drawn.contains(scene.as_str())), "{drawn}");
+    assert!(words_of_svg(&out.join("filters-stability.svg")).contains("start-upside-down"));
+    assert!(words_of_svg(&out.join("filters-glance.svg")).contains("vqf"));
+
+    let bare = folder.path().join("bare.toml");
+    std::fs::write(&bare, "duration = \"10 s\"\n[gyro]\nrate = \"100 Hz\"\n").unwrap();
+    let why = refusal(&["filters", bare.to_str().unwrap(), "--quick"]);
+    assert!(why.contains("has no [accel]"), "{why}");
 }

@@ -294,9 +294,8 @@ fn run(truth: &Truth, name: &str, kind: &FilterKind, with_mag: bool) -> Result<S
     let mag = if with_mag { of(SensorKind::Mag)? } else { Box::new(std::iter::empty()) };
     let streams = Streams { gyro: of(SensorKind::Gyro)?, accel: of(SensorKind::Accel)?, mag };
     let mut series = Series::default();
-    filters::run_as_read(kind, streams, with_mag, declination(folder)?, |t, attitude| {
-        series.push(t.0, attitude)
-    });
+    let options = filters::Options { with_mag, declination: declination(folder)?, start: None };
+    filters::run_as_read(kind, streams, &options, |t, attitude| series.push(t.0, attitude));
     if let Some(error) = failed.into_inner() {
         return Err(error.into());
     }

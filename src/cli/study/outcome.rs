@@ -27,12 +27,17 @@ impl Outcome {
 
     /// With `NAME.csv`: a header and a line a row; what is missing is empty.
     pub fn csv<T: Serialize>(self, rows: &[T]) -> Result<Outcome, Refusal> {
+        let name = format!("{}.csv", self.name);
+        self.table(&name, rows)
+    }
+
+    /// With one more CSV.
+    pub fn table<T: Serialize>(self, name: &str, rows: &[T]) -> Result<Outcome, Refusal> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         for row in rows {
             writer.serialize(row)?;
         }
-        let name = format!("{}.csv", self.name);
-        self.file(&name, writer.into_inner()?)
+        self.file(name, writer.into_inner()?)
     }
 
     /// With one more file.

@@ -67,13 +67,19 @@ impl TruthColumns {
         self.t.is_empty()
     }
 
-    /// The attitude at one of them, which was asked for.
+    /// The attitude at one of them.
+    ///
+    /// # Panics
+    /// It was not asked for, or there are fewer instants.
     pub fn attitude(&self, i: usize) -> Attitude {
         let [x, y, z, w] = &self.attitude;
         Attitude::from_quat(DQuat::from_xyzw(x[i], y[i], z[i], w[i]))
     }
 
-    /// The whole truth at one of them, all of which was asked for.
+    /// The whole truth at one of them.
+    ///
+    /// # Panics
+    /// Some of it was not asked for, or there are fewer instants.
     pub fn truth(&self, i: usize) -> Truth {
         fn at<F>(columns: &[Vec<f64>; 3], i: usize) -> Vector<F> {
             Vector::new(columns[0][i], columns[1][i], columns[2][i])

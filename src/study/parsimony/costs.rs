@@ -2,6 +2,7 @@
 
 use super::parts::Part;
 use super::variant::Variant;
+use crate::motion::Wants;
 use crate::scene::{Plan, SceneError};
 use crate::sensor::{Block, SensorKind};
 use crate::time::SimTime;
@@ -101,7 +102,7 @@ impl Group {
             let mut player = variant.player(plan, self.end, &[]);
             let (mut ticks, mut samples) = (0, 0);
             let start = now();
-            while let Some(columns) = player.play_columns() {
+            while let Some(columns) = player.play_columns(Wants::NONE) {
                 ticks += columns.truth.len();
                 samples += columns.sensors().map(Block::len).sum::<usize>();
                 black_box(columns);

@@ -2,6 +2,7 @@
 
 use super::parts::{Part, What};
 use super::variant::Variant;
+use crate::motion::Wants;
 use crate::scene::{Plan, SceneError};
 use crate::sensor::{SensorKind, SensorPlan, lsb, white_noise};
 use crate::time::SimTime;
@@ -72,7 +73,7 @@ struct Samples {
 fn played(variant: &Variant, plan: &Plan, end: SimTime, besides: &[&'static str]) -> Vec<Samples> {
     let mut all: Vec<Samples> = plan.sensors.iter().map(|_| Samples::default()).collect();
     let mut player = variant.player(plan, end, besides);
-    while let Some(columns) = player.play_columns() {
+    while let Some(columns) = player.play_columns(Wants::NONE) {
         for (samples, block) in all.iter_mut().zip(columns.sensors()) {
             let beside = block.velocity.iter().chain([&block.temperature]);
             samples.beside.iter_mut().zip(beside).for_each(|(all, new)| all.extend(new));

@@ -105,7 +105,11 @@ impl Trials<'_> {
         let declination = libm::atan2(field.y, field.x);
         let settled = SETTLE.min(SimTime(self.end.0 / 4));
         let error = |run: &Run| {
-            let attitudes = filters::run(run.kind, &readings, run.with_mag, declination);
+            let attitudes = filters::run(
+                run.kind,
+                &readings,
+                &filters::Options { with_mag: run.with_mag, declination, start: None },
+            );
             let settled = attitudes.iter().zip(&truth).filter(|((t, _), _)| *t >= settled);
             let errors: Vec<f64> =
                 settled.map(|((_, estimate), truth)| run.error(*truth, *estimate)).collect();

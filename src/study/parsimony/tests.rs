@@ -1,5 +1,6 @@
 use super::parts::{What, parts};
 use super::*;
+use crate::motion::Wants;
 use crate::player::{BLOCK, Player};
 use crate::sensor::SensorKind;
 use std::collections::BTreeSet;
@@ -31,7 +32,7 @@ type Heard = Vec<(Vec<Vec<u64>>, Vec<bool>)>;
 fn readings(plan: &Plan) -> Heard {
     let mut all: Heard = vec![(vec![Vec::new(); 6], Vec::new()); plan.sensors.len()];
     let mut player = Player::new(plan, plan.duration, BLOCK);
-    while let Some(columns) = player.play_columns() {
+    while let Some(columns) = player.play_columns(Wants::NONE) {
         for ((columns, missing), block) in all.iter_mut().zip(columns.sensors()) {
             for (all, new) in columns.iter_mut().zip(block.reading.iter().chain(&block.velocity)) {
                 all.extend(new.iter().map(|x| x.to_bits()));
@@ -199,7 +200,9 @@ fn leaving_out_by_key_is_leaving_out_of_the_chain() {
             plan.build_without(sensor, if sensor.kind == kind { std::slice::from_ref(&name) } else { &[] })
         });
         let mut keyed = Player::new(&by_key, plan.duration, BLOCK);
-        while let (Some(chain), Some(keyed)) = (player.play_columns(), keyed.play_columns()) {
+        while let (Some(chain), Some(keyed)) =
+            (player.play_columns(Wants::NONE), keyed.play_columns(Wants::NONE))
+        {
             for (chain, keyed) in chain.sensors().zip(keyed.sensors()) {
                 assert!(chain.reading == keyed.reading && chain.velocity == keyed.velocity, "{part:?}");
             }

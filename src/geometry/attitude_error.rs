@@ -1,6 +1,6 @@
 //! One estimate's error, split into inclination and heading.
 
-use crate::geometry::Attitude;
+use super::Attitude;
 use std::f64::consts::{PI, TAU};
 
 /// One estimate's error, rad.
@@ -34,8 +34,8 @@ impl AttitudeError {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Euler, exp};
     use super::*;
-    use crate::geometry::{Euler, exp};
     use glam::DVec3;
     use proptest::prelude::*;
 
