@@ -50,6 +50,8 @@ struct Request<'a> {
     scene: Option<&'a Plan>,
     /// What the user calls the scene: a file or a built-in name.
     source: Option<&'a str>,
+    /// One study is asked for, so a scene that does not suit it is a mistake.
+    is_alone: bool,
 }
 
 /// Every study, in the order of `all`.
@@ -75,7 +77,8 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
         });
         dataset::may_write(dir, arguments.force, Holds::Study, &names.collect::<Vec<_>>())?;
     }
-    let request = Request { quick: arguments.quick, scene: plan.as_ref(), source: scene };
+    let request =
+        Request { quick: arguments.quick, scene: plan.as_ref(), source: scene, is_alone: studies.len() == 1 };
     let outcomes = studies.iter().map(|study| (study.run)(&request)).collect::<Result<Vec<_>, _>>()?;
     if let Some(dir) = &arguments.out {
         let mut files: Vec<(String, Vec<u8>)> = Vec::new();

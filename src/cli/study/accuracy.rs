@@ -192,7 +192,7 @@ mod tests {
         vec![row("paper", 100, Some(1e-3)), row("coning-2", 100, None)]
     }
 
-    const NONE: Request = Request { quick: true, scene: None, source: None };
+    const NONE: Request = Request { quick: true, scene: None, source: None, is_alone: true };
 
     #[test]
     fn the_table_for_machines_has_the_columns_it_is_known_by() {
@@ -220,7 +220,8 @@ mod tests {
     fn a_scene_joins_unless_it_has_the_name_of_a_motion() {
         let mut plan = Plan::load("coning", &[]).unwrap();
         fn joined(plan: &Plan) -> Result<usize, Refusal> {
-            cases(&Request { quick: true, scene: Some(plan), source: None }).map(|cases| cases.len())
+            cases(&Request { quick: true, scene: Some(plan), source: None, is_alone: true })
+                .map(|cases| cases.len())
         }
         assert_eq!(joined(&plan).unwrap(), 5);
         plan.name = "B".into();

@@ -4,8 +4,8 @@ mod charts;
 mod text;
 
 use super::{Outcome, Request, Study};
-use crate::cli::Refusal;
 use crate::cli::progress::Bar;
+use crate::cli::{Refusal, tell};
 use crate::study::all_cores;
 use crate::study::filters::scenes::{self, Scene};
 use crate::study::filters::{self, Effort, Row, stability};
@@ -65,12 +65,19 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
         .file("filters-stability.svg", charts::verdicts(&verdicts))
 }
 
-/// The built-in scenes, and the one given unless it is one of them.
+/// The built-in scenes, and the one given. Where other studies are asked for too, one that suits no filter is left out.
 fn scenes(request: &Request) -> Result<Vec<Scene>, Refusal> {
     let mut scenes = scenes::built_in(request.quick)?;
     let Some((plan, source)) = request.scene.zip(request.source) else { return Ok(scenes) };
     let rates: &[u32] = if request.quick { &scenes::QUICK_RATES } else { &scenes::RATES };
-    let given = Scene::given(source, plan, rates).map_err(Refusal)?;
+    let given = match Scene::given(source, plan, rates) {
+        Ok(given) => given,
+        Err(why) if request.is_alone => return Err(Refusal(why)),
+        Err(why) => {
+            tell(&format!("filters: without {source}: {why}"));
+            return Ok(scenes);
+        }
+    };
     // A scene that takes the name of a built-in one stands for it.
     scenes.retain(|scene| scene.name != given.name);
     scenes.push(given);

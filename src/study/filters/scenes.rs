@@ -1,5 +1,6 @@
 //! The scenes that filters are judged on, and the rates of their sensors.
 
+use super::START_UP;
 use crate::scene::{Plan, SceneError};
 use crate::sensor::{SensorKind, SensorPlan};
 use crate::time::SimTime;
@@ -65,13 +66,19 @@ impl Scene {
     /// gyro's is higher.
     ///
     /// # Errors
-    /// It has no gyro or no accelerometer.
+    /// It has no gyro or no accelerometer, or is over before errors count.
     pub fn given(source: &str, plan: &Plan, rates: &[u32]) -> Result<Scene, String> {
         for kind in [SensorKind::Gyro, SensorKind::Accel] {
             if sensor(plan, kind).is_none() {
                 let name = &plan.name;
                 return Err(format!("the scene `{name}` has no [{kind}], and every filter needs one"));
             }
+        }
+        if plan.duration <= START_UP {
+            let (name, duration) = (&plan.name, plan.duration);
+            return Err(format!(
+                "the scene `{name}` lasts {duration}, and a filter's errors count from {START_UP} on: give it a longer duration"
+            ));
         }
         Ok(Scene::of(source, plan, rates.to_vec()))
     }

@@ -78,9 +78,26 @@ fn medians_are_in_the_middle() {
 fn a_scene_joins_and_one_that_is_built_in_comes_last() {
     let joined = |name: &str| {
         let plan = Plan::load(name, &[]).unwrap();
-        let scenes = scenes(&Request { quick: true, scene: Some(&plan), source: Some(name) }).unwrap();
+        let request = Request { quick: true, scene: Some(&plan), source: Some(name), is_alone: true };
+        let scenes = scenes(&request).unwrap();
         scenes.iter().map(|scene| scene.name.clone()).collect::<Vec<_>>()
     };
     assert_eq!(joined("coning"), ["still", "level-then-turn", "magnetic-disturbance", "coning"]);
     assert_eq!(joined("still"), ["level-then-turn", "magnetic-disturbance", "still"]);
+}
+
+#[test]
+fn a_scene_that_suits_no_filter_is_refused_unless_other_studies_run_too() {
+    let gyro = "[gyro]\nrate = \"100 Hz\"\n";
+    for (text, says) in [
+        (format!("duration = \"10 s\"\n{gyro}"), "has no [accel]"),
+        (format!("duration = \"2 s\"\n{gyro}[accel]\nrate = \"100 Hz\"\n"), "lasts 2 s"),
+    ] {
+        let plan = Plan::parse(&text, "bare.toml", "bare", &[]).unwrap();
+        let request =
+            |is_alone| Request { quick: true, scene: Some(&plan), source: Some("bare.toml"), is_alone };
+        let why = scenes(&request(true)).unwrap_err().0;
+        assert!(why.contains(says), "{why}");
+        assert_eq!(scenes(&request(false)).unwrap().len(), 3);
+    }
 }
