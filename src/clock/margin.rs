@@ -51,15 +51,21 @@ impl Margin {
         }
     }
 
-    /// How much of a wait of `ns` to spin: the margin, but at most three quarters, so that a real-time thread leaves
+    /// How much of a wait of `ns` to spin: the margin, but at most seven eighths, so that a real-time thread leaves
     /// the rest to others. (The kernel stops real-time threads altogether at 95 % of a second, for 50 ms.) All of it
-    /// where a sleep of a quarter would usually end too late.
+    /// where a sleep of an eighth would usually end too late.
     pub fn of_wait(&self, ns: i64) -> i64 {
-        let most = ns / 4 * 3;
+        let most = ns / 8 * 7;
         if self.policy == Policy::Adaptive && most < self.usual as i64 {
             return ns;
         }
         self.ns().min(most)
+    }
+
+    /// Believes a little less, after a rest, that sleeps end too late for the waits of now: sooner or later one of them is
+    /// tried, and tells. What a rest itself tells is of no use, for a longer sleep ends later.
+    pub fn doubt(&mut self) {
+        self.usual = (self.usual - Margin::GAIN / 8.0).max(0.0);
     }
 
     /// Learns from a sleep that ended this late in a wait of `wait`, both ns.

@@ -11,9 +11,9 @@ struct Rest {
 /// Of a thread that is too late to sleep, packet after packet: it never reaches the kernel's limit for real-time threads
 /// (95 % of a second, then a gap of 50 ms).
 const BEHIND: Rest = Rest { after: 20_000_000, length: 2_000_000 };
-/// Of a thread that is in time, but whose waits are too short for a sleep: it takes 70 % of a core, and more than half of
-/// its waits end on time.
-const IN_TIME: Rest = Rest { after: 400_000, length: 150_000 };
+/// Of a thread that is in time, but whose waits are too short for a sleep: it takes some 75 % of a core, and more than half
+/// of its waits end on time.
+const IN_TIME: Rest = Rest { after: 200_000, length: 60_000 };
 
 /// A clock whose waits end on time, as far as its sleeps allow.
 #[derive(Clone, Debug)]
@@ -34,12 +34,6 @@ impl<C: Clock> Precise<C> {
     /// The present margin.
     pub fn margin(&self) -> Margin {
         self.margin
-    }
-
-    /// Sleeps until `wake`, in a wait of `wait` ns, and learns from when it ends.
-    fn sleep_and_learn(&mut self, wake: i64, wait: i64) {
-        self.sleep_until(wake);
-        self.margin.learn(self.slept - wake, wait);
     }
 
     /// The wrapped clock.
@@ -72,11 +66,13 @@ impl<C: Clock> Clock for Precise<C> {
         let wait = t - now;
         let wake = t - self.margin.of_wait(wait);
         if wake > now {
-            self.sleep_and_learn(wake, wait);
+            self.sleep_until(wake);
+            self.margin.learn(self.slept - wake, wait);
         } else {
             let Rest { after, length } = if wait > 0 { IN_TIME } else { BEHIND };
             if now - self.slept > after {
-                self.sleep_and_learn(now + length, length);
+                self.sleep_until(now + length);
+                self.margin.doubt();
             }
         }
         self.clock.spin_until(t);

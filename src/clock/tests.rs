@@ -66,7 +66,7 @@ fn the_margin_comes_to_cover_all_but_a_share_of_the_wakes_that_grows_with_the_ra
 }
 
 #[test]
-fn waits_that_a_sleep_would_miss_are_spun_with_rests_and_longer_ones_are_slept_again() {
+fn waits_that_a_sleep_would_miss_are_spun_with_rests() {
     let mut clock = Precise::new(VirtualClock::waking_late([40_000]), Policy::Adaptive);
     waits(&mut clock, PERIOD, 1_000);
     let (spun, start, period) = (clock.inner().spun, clock.now(), 31_250);
@@ -80,7 +80,18 @@ fn waits_that_a_sleep_would_miss_are_spun_with_rests_and_longer_ones_are_slept_a
     assert!((0.6..0.75).contains(&awake), "{awake} of the time is spun");
     let sleeps = clock.inner().sleeps;
     waits_from(&mut clock, PERIOD, 100);
-    assert_eq!(clock.inner().sleeps, sleeps + 100);
+    assert_eq!(clock.inner().sleeps, sleeps + 100, "longer waits are slept");
+}
+
+#[test]
+fn a_machine_that_wakes_sooner_again_is_found_out_by_waits_that_were_spun() {
+    let late = [vec![40_000; 1_000], vec![5_000; 100_000]].concat();
+    let mut clock = Precise::new(VirtualClock::waking_late(late), Policy::Adaptive);
+    waits(&mut clock, PERIOD, 1_000);
+    waits_from(&mut clock, 31_250, 32_000);
+    let sleeps = clock.inner().sleeps;
+    waits_from(&mut clock, 31_250, 1_000);
+    assert_eq!(clock.inner().sleeps, sleeps + 1_000, "each of them");
 }
 
 #[test]
@@ -96,12 +107,12 @@ fn the_margin_follows_a_machine_that_changes_and_stays_within_its_bounds() {
 }
 
 #[test]
-fn a_quarter_of_a_wait_of_any_length_is_slept() {
+fn an_eighth_of_a_wait_of_any_length_is_slept() {
     for period in [10_000, 40_000, 125_000, PERIOD] {
         let mut clock = Precise::new(VirtualClock::default(), Policy::Fixed(80_000));
         let late = waits(&mut clock, period, 1_000);
         assert!(late.iter().all(|&late| late == 0));
-        assert_eq!(clock.inner().spun, 1_000 * (period / 4 * 3).min(80_000), "{period}");
+        assert_eq!(clock.inner().spun, 1_000 * (period / 8 * 7).min(80_000), "{period}");
         assert_eq!(clock.inner().sleeps, 1_000);
     }
 }

@@ -181,7 +181,7 @@ fn the_pacing_thread_allocates_nothing() {
         [("mpu@pty", Speed::Times(1.0)), ("mavlink@pty", Speed::Max), ("csv@pty", Speed::Times(2.0))]
     {
         let (plan, shared) = (plan(SCENE), Arc::<Shared>::default());
-        let (ring, _) = made(&plan, to, &shared);
+        let (ring, made) = made(&plan, to, &shared);
         let file = tempfile::NamedTempFile::new().unwrap();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         let address = format!("file:{}", file.path().display()).parse().unwrap();
@@ -191,6 +191,10 @@ fn the_pacing_thread_allocates_nothing() {
         let counted = allocation_counter::measure(|| pacer.run(0));
         assert!(pacer.lanes[0].tally.packets > 1000);
         assert_eq!(counted.count_total, 0, "{to}");
+        accounts_balance(&made, &mut pacer);
+        assert_eq!(made.packets, shared.packets.get(), "{to}");
+        pacer.lanes[0].finish();
+        assert_eq!(file.as_file().metadata().unwrap().len(), pacer.lanes[0].tally.bytes, "{to}");
     }
 }
 
