@@ -83,7 +83,7 @@ fn zero_bytes(bytes: &[u8]) -> u64 {
         Ok(bytes) => u64::from_le_bytes(bytes),
         Err(_) => bytes.iter().rev().fold(u64::MAX, |word, &byte| word << 8 | u64::from(byte)),
     };
-    !((word & LOW) + LOW | word | LOW)
+    !(((word & LOW) + LOW) | word | LOW)
 }
 
 /// Reads what [`encode`] wrote (without a closing zero) into `out` and returns the length.

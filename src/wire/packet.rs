@@ -73,12 +73,12 @@ impl Packet {
     /// Appends a packet whose bytes are written where they belong; `write` returns how many there are. A packet that is
     /// made elsewhere and moved here costs as much again as its bytes.
     #[inline(always)]
-    pub(super) fn append<'o>(
-        out: &'o mut Vec<Packet>,
+    pub(super) fn append(
+        out: &mut Vec<Packet>,
         due: SimTime,
         carries: Kinds,
         write: impl FnOnce(&mut [u8; MAX_PACKET]) -> usize,
-    ) -> &'o mut Packet {
+    ) -> &mut Packet {
         let i = out.len();
         out.push(Packet::BLANK);
         let packet = &mut out[i];
