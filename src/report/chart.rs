@@ -10,6 +10,7 @@
 //! | `panels` | stacked time series with a common time axis |
 //! | `histogram` | distributions: histograms, the share below or above a value |
 //! | `loglog` | small multiples of cost against error, with the front of the cheapest |
+//! | `points` | named points: cost across, error up, their front |
 //! | `grid` | a table of verdicts |
 //! | `curves` | measured curves with their bands, and theory |
 //! | `bars` | what adds up, one bar for each step |
@@ -23,11 +24,14 @@ mod axis;
 mod bars;
 mod canvas;
 mod curve;
+mod front;
 mod grid;
 mod histogram;
+mod labels;
 mod loglog;
 mod panels;
 mod plot;
+mod points;
 mod series;
 mod stack;
 #[cfg(test)]
@@ -39,4 +43,5 @@ pub use grid::{Cell, Grid, Row, Verdict, grid};
 pub use histogram::{Distribution, Histogram, Marker, Shape, histogram};
 pub use loglog::{LogLog, Method, Motion, loglog};
 pub use panels::{Line, LineKind, Panel, Panels, panels};
+pub use points::{Level, Point, Points, points};
 pub use stack::stacked;

@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, Options};
 use super::canvas::{Canvas, Font, INK, Pen, color, mark, sheet};
+use super::front;
 use super::plot::{EndLabel, Frame, Head, Legend, MARGIN, Sign};
 use super::series::drawable;
 
@@ -101,14 +102,10 @@ fn entries(names: &[&str]) -> Vec<(Sign, String)> {
     };
     let mut entries: Vec<_> = names.iter().enumerate().map(method).collect();
     if !entries.is_empty() {
-        let sign = Sign::Ring(front_pen(), ring_pen());
+        let sign = Sign::Ring(front::pen(), ring_pen());
         entries.push((sign, "cheapest for its error (name in bold)".to_owned()));
     }
     entries
-}
-
-fn front_pen() -> Pen {
-    Pen::new(INK, 5.0).alpha(0.22)
 }
 
 fn ring_pen() -> Pen {
@@ -171,8 +168,8 @@ impl<'a> Plan<'a> {
         frame.draw_axes(canvas, true);
         frame.draw_labels(canvas, &self.input.x_label, &self.input.y_label, self.left);
         let floor = floor(self.input);
-        let front = front(motion, floor);
-        draw_front(canvas, frame, &front);
+        let front = front::best(motion.methods.iter().flat_map(|m| m.drawn(floor)));
+        front::draw(canvas, frame, &front);
         let mut labels = Vec::new();
         for method in &motion.methods {
             let n = self.names.iter().position(|n| *n == method.name).unwrap_or(0);
@@ -199,34 +196,5 @@ impl<'a> Plan<'a> {
         if labels.is_empty() {
             frame.draw_no_data(canvas);
         }
-    }
-}
-
-/// The points with a smaller error than every point that costs no more, from cheap to expensive.
-fn front(motion: &Motion, floor: f64) -> Vec<(f64, f64)> {
-    let mut points: Vec<_> = motion.methods.iter().flat_map(|m| m.drawn(floor)).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut front: Vec<(f64, f64)> = Vec::new();
-    for point in points {
-        if front.last().is_none_or(|best| point.1 < best.1) {
-            front.push(point);
-        }
-    }
-    front
-}
-
-/// A step line: the smallest error for a cost.
-fn draw_front(canvas: &mut Canvas<'_>, frame: &Frame, front: &[(f64, f64)]) {
-    let mut path: Vec<(f64, f64)> = Vec::new();
-    for &point in front {
-        let (x, y) = frame.at(point);
-        if let Some(&(_, above)) = path.last() {
-            path.push((x, above));
-        }
-        path.push((x, y));
-    }
-    if let Some(last) = path.last().copied() {
-        path.push((frame.right(), last.1));
-        canvas.path(&path, &front_pen());
     }
 }

@@ -150,6 +150,8 @@ impl Frame {
 #[derive(Clone, Copy)]
 pub(super) enum Sign {
     Line(Pen),
+    /// A mark alone.
+    Mark(Mark, Color),
     /// A line with a mark.
     Marked(Mark, Pen),
     /// A point of the front: a ring on a broad line.
@@ -197,6 +199,7 @@ impl Legend {
             let middle = (x + SIGN / 2.0, y);
             match sign {
                 Sign::Line(pen) => canvas.line((x, y), (x + SIGN, y), pen),
+                Sign::Mark(mark, color) => canvas.mark(*mark, middle, 4.5, *color),
                 Sign::Marked(mark, pen) => {
                     canvas.line((x, y), (x + SIGN, y), pen);
                     canvas.mark(*mark, middle, 4.0, pen.color);

@@ -5,6 +5,8 @@ use super::canvas::{Font, INK};
 use super::series::{spread, thin};
 use super::*;
 
+mod points;
+
 /// Units of a document to a pixel.
 const UNITS: f64 = 4.0;
 
@@ -370,6 +372,7 @@ fn a_chart_without_data_says_so() {
         grid(&Grid::default()),
         histogram(&Histogram::default()),
         curves(&Curves::default()),
+        points(&Points::default()),
     ];
     for svg in pictures {
         assert_says(&svg, &["no data"]);
@@ -434,6 +437,9 @@ fn all_charts_of(x: &[f64], y: &[f64]) {
         let method = Method { name: "a".into(), points: points.clone() };
         let motions = vec![Motion { title: "m".into(), methods: vec![method] }];
         check(&loglog(&LogLog { y_floor, motions, ..LogLog::default() }));
+        for svg in points::of_numbers(&points, y_floor) {
+            check(&svg);
+        }
     }
 }
 
