@@ -20,10 +20,12 @@ mod euler;
 mod exp_average;
 mod exp_midpoint;
 mod increment_1;
+mod legendre;
 mod magnus_4;
 mod paper;
 mod paper_normalised;
 mod polynomial_fit;
+mod polynomial_fit_4;
 mod real;
 mod reference;
 mod rk4;
@@ -44,6 +46,7 @@ pub use magnus_4::Magnus4;
 pub use paper::Paper;
 pub use paper_normalised::PaperNormalised;
 pub use polynomial_fit::PolynomialFit;
+pub use polynomial_fit_4::PolynomialFit4;
 pub use real::Real;
 pub use reference::{ReferenceError, Step, from_accel_mag, integrated, reference};
 pub use rk4::Rk4;
@@ -52,7 +55,7 @@ pub use rkmk_4::Rkmk4;
 use std::fmt;
 
 /// Every method: first those with samples of rate, then those with exact increments, each group by order.
-pub static METHODS: [&MethodKind; 14] = [
+pub static METHODS: [&MethodKind; 15] = [
     &euler::KIND,
     &paper::KIND,
     &paper_normalised::KIND,
@@ -66,6 +69,7 @@ pub static METHODS: [&MethodKind; 14] = [
     &coning_2::KIND,
     &coning_3::KIND,
     &coning_4::KIND,
+    &polynomial_fit_4::KIND,
     &polynomial_fit::KIND,
 ];
 

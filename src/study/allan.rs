@@ -124,9 +124,9 @@ impl Octaves {
 
 /// The Allan variance of the terms that have a closed form.
 ///
-/// White noise of σ a sample: `σ²/(τ·rate)`; rounding to counts adds `lsb²/12` to σ² where noise makes it random; a
-/// walk of K: `K²·τ/3` (IEEE Std 952-1997, annex C); Gauss-Markov of σ and T:
-/// `2σ²T/τ·(1 − T/(2τ)·(3 − 4·e^(−τ/T) + e^(−2τ/T)))`; a 1/f spectrum of B, within its band: `B²·2·ln 2/π`.
+/// Over averages of m samples: white noise of σ a sample, `σ²/m`; rounding to counts adds `lsb²/12` to σ² where noise
+/// makes it random; a walk of steps s, `s²·(2m² + 1)/(6m)`, which for long averages is IEEE Std 952-1997's `K²·τ/3`;
+/// Gauss-Markov as [`wandering`]; a 1/f spectrum of B, within its band, `B²·2·ln 2/π`.
 fn variance(plan: &Plan, sensor: &SensorPlan, axis: usize, tau: f64) -> f64 {
     let values = &sensor.values;
     let rate = sensor.rate.as_hz();
@@ -135,21 +135,29 @@ fn variance(plan: &Plan, sensor: &SensorPlan, axis: usize, tau: f64) -> f64 {
     let step = bias_step(values, &sensor.context(plan.seed))[axis];
     let wander = values.get(BIAS_INSTABILITY).unwrap_or_default()[axis];
     let time = values.get(CORRELATION_TIME).unwrap_or_default()[axis];
-    let mut variance = (white * white + count * count / 12.0) / (tau * rate) + step * step * rate * tau / 3.0;
+    let samples = tau * rate;
+    let walked = step * step * (2.0 * samples * samples + 1.0) / (6.0 * samples);
+    let mut variance = (white * white + count * count / 12.0) / samples + walked;
     if is_flicker(values) {
         // Flat within its band: 2·ln 2/π of its square.
         variance += wander * wander * 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
     } else if wander > 0.0 && time > 0.0 {
-        let x = tau / time;
-        // The series where the closed form is a difference of nearly equal numbers.
-        let share = if x < 1e-3 {
-            x * x / 3.0
-        } else {
-            1.0 - (3.0 - 4.0 * libm::exp(-x) + libm::exp(-2.0 * x)) / (2.0 * x)
-        };
-        variance += 2.0 * wander * wander / x * share;
+        variance += wander * wander * wandering(samples, 1.0 / (rate * time));
     }
     variance
+}
+
+/// The Allan variance of a Gauss-Markov process of variance 1 over averages of m samples, each x correlation times
+/// after the one before: the variance of an average less its covariance with the next,
+/// `(m + (2ρ(m·a − A) − ρ·A²)/a²)/m²` with ρ = e^(−x), a = 1 − ρ and A = 1 − ρ^m. Where A is small, its beginning as a
+/// walk, `x·(2m² + 1)/(3m)`.
+fn wandering(m: f64, x: f64) -> f64 {
+    if m * x < 1e-4 {
+        return x * (2.0 * m * m + 1.0) / (3.0 * m);
+    }
+    let (one, all) = (-libm::expm1(-x), -libm::expm1(-m * x));
+    let rho = 1.0 - one;
+    (m + (2.0 * rho * (m * one - all) - rho * all * all) / (one * one)) / (m * m)
 }
 
 /// The unit of a sensor's deviations as a chart spells it.
@@ -188,6 +196,19 @@ mod tests {
                 assert!(wrong.is_empty(), "{rate}, {terms}: {wrong:?}");
                 assert!(!off(&scene, 1.1).is_empty(), "{rate}, {terms}: a tenth more is not seen");
             }
+        }
+    }
+
+    #[test]
+    fn the_theory_of_a_wandering_bias_is_the_sum_over_its_samples() {
+        for (m, x) in [(1u32, 0.003f64), (2, 0.4), (7, 0.1), (64, 0.002), (512, 0.05), (3, 4e-5), (3, 2e-5)] {
+            // E[(second average − first)²]/2 from the correlation of every pair of samples.
+            let sign = |i: u32| if i < m { -1.0 } else { 1.0 };
+            let pair = |i: u32, j: u32| sign(i) * sign(j) * (-x * f64::from(i.abs_diff(j))).exp();
+            let sum: f64 = (0..2 * m).flat_map(|i| (0..2 * m).map(move |j| pair(i, j))).sum();
+            let expected = 0.5 * sum / f64::from(m * m);
+            let found = wandering(f64::from(m), x);
+            assert!((found / expected - 1.0).abs() < 1e-4, "{m} {x}: {found} {expected}");
         }
     }
 

@@ -42,6 +42,7 @@ fn chart(cost: &Cost) -> String {
             "one thread, in memory: {} million a second{ratio}",
             number(cost.nine_axis_samples_per_s / 1e6)
         ),
+        x_label: "cost (ns per nine-axis sample)".into(),
         unit: "ns".into(),
         bars: bars.collect(),
         line: cost.floor_samples_per_s.map(|floor| ("its normal numbers alone".into(), 1e9 / floor)),

@@ -42,6 +42,7 @@ fn chart(rows: &[stability::Row]) -> String {
 fn figure(row: &stability::Row) -> String {
     match (row.verdict, row.first_failing_step) {
         (Verdict::Stable, _) => String::new(),
+        (Verdict::Fails, Some(step)) if step >= 10_000 => format!("#{:.1e}", step as f64),
         (Verdict::Fails, Some(step)) => format!("#{}", number(step as f64)),
         _ => format!("{:.0e}", row.figure),
     }

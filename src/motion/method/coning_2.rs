@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Coning2, 2>(
     4,
     Input::Increments(2),
     BOTH,
-    29,
+    18,
 );
 
 /// `q ← q ⊗ exp(a + b + 2/3·a×b)`.

@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Coning3, 3>(
     4,
     Input::Increments(3),
     DOUBLE,
-    35,
+    19,
 );
 
 /// `q ← q ⊗ exp(a + b + c + 9/20·a×c + 27/40·b×(c − a))`.

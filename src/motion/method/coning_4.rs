@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Coning4, 4>(
     3,
     Input::Increments(4),
     DOUBLE,
-    35,
+    18,
 );
 
 /// `q ← q ⊗ exp(a + b + c + d + (54·a + 92·b + 214·c)/105 × d)`.

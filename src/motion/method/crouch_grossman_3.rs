@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<CrouchGrossman3, 3>(
     3,
     Input::Rate(&[0.0, 3.0 / 4.0, 17.0 / 24.0]),
     DOUBLE,
-    66,
+    44,
 );
 
 /// `q ← q ⊗ exp(b₁h·w(t)) ⊗ exp(b₂h·w(t + ¾h)) ⊗ exp(b₃h·w(t + 17/24·h))` with b = (13/51, −2/3, 24/17).

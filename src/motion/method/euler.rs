@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Euler, 1>(
     1,
     Input::Rate(&[0.0]),
     BOTH,
-    26,
+    17,
 );
 
 /// `q ← (q + h·½·q⊗w(t)) / |…|`: the tangent at the step's start.

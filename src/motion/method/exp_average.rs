@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<ExpAverage, 2>(
     2,
     Input::Rate(&[0.0, 1.0]),
     BOTH,
-    25,
+    16,
 );
 
 /// `q ← q ⊗ exp(h·(w(t) + w(t+h))/2)`.

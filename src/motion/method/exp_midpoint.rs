@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<ExpMidpoint, 1>(
     2,
     Input::Rate(&[0.5]),
     DOUBLE,
-    23,
+    16,
 );
 
 /// `q ← q ⊗ exp(h·w(t + h/2))`, the Lie midpoint rule.

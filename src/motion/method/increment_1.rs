@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Increment1, 1>(
     2,
     Input::Increments(1),
     DOUBLE,
-    22,
+    15,
 );
 
 /// `q ← q ⊗ exp(a)`, where a is the integral of the rate over the step.

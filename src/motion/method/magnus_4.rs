@@ -11,7 +11,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Magnus4, 2>(
     4,
     Input::Rate(&[0.5 - ROOT_3 / 6.0, 0.5 + ROOT_3 / 6.0]),
     BOTH,
-    30,
+    19,
 );
 
 /// `q ← q ⊗ exp(h/2·(w₁ + w₂) + √3/12·h²·w₁×w₂)`, w₁ and w₂ at the Gauss points `½ ∓ √3/6` of the step.

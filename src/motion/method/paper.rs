@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Paper, 2>(
     2,
     Input::Rate(&[0.0, 1.0]),
     BOTH,
-    20,
+    14,
 );
 
 /// `q ← q ⊗ [cos(θ/2), w_c·h/2]` with `w_c = (w(t) + w(t+h))/2`, `θ = h·|w_c|`: the exponential of the averaged

@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<PaperNormalised, 2>(
     2,
     Input::Rate(&[0.0, 1.0]),
     DOUBLE,
-    30,
+    19,
 );
 
 /// [`Paper`]'s step divided by its norm: the norm no longer grows, but the angle still errs by θ³/24 a step.

@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Rk4, 3>(
     4,
     Input::Rate(&[0.0, 0.5, 1.0]),
     DOUBLE,
-    59,
+    41,
 );
 
 /// The classical Runge-Kutta method on `q̇ = ½·q⊗w(t)` with the true rate at the middle, then renormalised.

@@ -8,7 +8,7 @@ pub(super) static KIND: MethodKind = MethodKind::of::<Rkmk4, 3>(
     4,
     Input::Rate(&[0.0, 0.5, 1.0]),
     DOUBLE,
-    56,
+    38,
 );
 
 /// The classical Runge-Kutta method on the rotation vector's equation `φ̇ = w + ½·φ×w + 1/12·φ×(φ×w)`, then `q ← q

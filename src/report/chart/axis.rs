@@ -40,6 +40,11 @@ impl Axis {
         if options.log { Self::log(values, options) } else { Self::linear(range(values), options) }
     }
 
+    /// The same range without marks.
+    pub fn without_ticks(self) -> Self {
+        Self { ticks: Vec::new(), power: None, ..self }
+    }
+
     fn linear(range: Option<(f64, f64)>, options: &Options) -> Self {
         let (lo, hi) = range.unwrap_or((0.0, 1.0));
         let middle = lo / 2.0 + hi / 2.0;

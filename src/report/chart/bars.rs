@@ -1,7 +1,9 @@
 //! Horizontal bars, one below the other, each with its figure.
 
-use super::canvas::{Anchor, FAINT, Font, INK, Pen, RULE, WHITE, color, sheet};
-use super::plot::{Head, MARGIN, SMALL, longest};
+use super::axis::{Axis, Options};
+use super::canvas::{Anchor, Font, INK, Pen, color, sheet};
+use super::plot::{Frame, Head, MARGIN, SMALL, longest};
+use super::series::drawable;
 use crate::report::number;
 
 const WIDTH: f64 = 420.0;
@@ -14,6 +16,8 @@ pub struct Bars {
     pub title: String,
     /// A second line; may be empty.
     pub subtitle: String,
+    /// The quantity on the horizontal axis, with its unit: `cost (ns per sample)`.
+    pub x_label: String,
     /// The unit of the figures.
     pub unit: String,
     /// The bars, from top to bottom.
@@ -33,58 +37,63 @@ pub struct Bar {
     pub added: f64,
 }
 
-/// Draws bars.
+/// Draws bars. Their figures stand in a column of their own, so that the line crosses none.
 #[must_use]
 pub fn bars(input: &Bars) -> String {
-    let font = Font::new(12.0, INK);
-    let small = Font::new(SMALL, INK);
+    let (font, small) = (Font::new(12.0, INK), Font::new(SMALL, INK));
     let names: Vec<&str> = input.bars.iter().map(|bar| bar.name.as_str()).collect();
+    let figures: Vec<String> = input.bars.iter().map(|bar| figure(bar, &input.unit)).collect();
     let left = MARGIN + longest(&font, &names) + 10.0;
-    let figure = |bar: &Bar| match bar.value.is_finite() {
-        true => {
-            let sign = if bar.added < 0.0 { "−" } else { "+" };
-            format!("{} {} ({sign}{})", number(bar.value), input.unit, number(bar.added.abs()))
-        }
-        false => "-".to_string(),
-    };
-    let figures: Vec<String> = input.bars.iter().map(figure).collect();
     let head = Head::new(&input.title, &input.subtitle, left + WIDTH);
-    let top = head.height() + if input.line.is_some() { 26.0 } else { 8.0 };
-    let bottom = top + BAR * input.bars.len().max(2) as f64;
-    let right = left + WIDTH + longest(&small, &figures) + 14.0;
-    let values = input.bars.iter().map(|bar| bar.value).chain(input.line.iter().map(|line| line.1));
-    let most = values.filter(|value| value.is_finite() && *value > 0.0).fold(0.0, f64::max);
-    let at = |value: f64| {
-        left + if value.is_finite() && most > 0.0 { (value / most).clamp(0.0, 1.0) * WIDTH } else { 0.0 }
+    let frame = Frame {
+        left,
+        top: head.height() + if input.line.is_some() { 26.0 } else { 8.0 },
+        width: WIDTH,
+        height: BAR * input.bars.len().max(2) as f64,
+        x: axis(input),
+        y: Axis::new([], &Options::default()).without_ticks(),
     };
-    let width = right.max(head.width()) + MARGIN;
-    sheet(width, bottom + MARGIN, &input.title, |canvas| {
+    let right = frame.right() + 12.0 + longest(&small, &figures);
+    let name_end =
+        input.line.as_ref().map_or(0.0, |(name, value)| frame.at((*value, 0.0)).0 + 5.0 + small.width(name));
+    let width = right.max(name_end).max(head.width()) + MARGIN;
+    sheet(width, frame.bottom() + 46.0, &input.title, |canvas| {
         head.draw(canvas, MARGIN);
-        canvas.line((left, top - 2.0), (left, bottom + 2.0), &Pen::new(RULE, 1.5));
+        frame.draw_axes(canvas, true);
+        frame.draw_labels(canvas, &input.x_label, "", left);
         if input.bars.is_empty() {
-            let font = Font::new(14.0, FAINT).anchor(Anchor::Middle);
-            canvas.text("no data", (left + WIDTH / 2.0, top + BAR), &font);
+            frame.draw_no_data(canvas);
         }
-        for (i, bar) in input.bars.iter().enumerate() {
-            let (upper, middle) = (top + i as f64 * BAR + 4.0, top + (i as f64 + 0.5) * BAR);
+        for (i, (bar, figure)) in input.bars.iter().zip(&figures).enumerate() {
+            let (upper, middle) = (frame.top + i as f64 * BAR + 4.0, frame.top + (i as f64 + 0.5) * BAR);
+            let at = |value: f64| if value.is_finite() { frame.at((value, 0.0)).0 } else { left };
             let (end, old) = (at(bar.value), at(bar.value - bar.added.max(0.0)));
             canvas.rect((left, upper), (old - left, BAR - 8.0), color(0), 0.35);
             canvas.rect((old, upper), (end - old, BAR - 8.0), color(0), 1.0);
             canvas.text(&bar.name, (left - 8.0, middle), &font.anchor(Anchor::End));
+            canvas.text(figure, (frame.right() + 12.0, middle), &small);
         }
         if let Some((name, value)) = &input.line {
-            canvas.line(
-                (at(*value), top - 6.0),
-                (at(*value), bottom + 2.0),
-                &Pen::new(INK, 1.2).dashed(5.0, 3.0),
-            );
-            canvas.text(name, (at(*value) + 5.0, top - 12.0), &small);
-        }
-        for (i, (bar, figure)) in input.bars.iter().zip(&figures).enumerate() {
-            let (from, middle) = (at(bar.value) + 8.0, top + (i as f64 + 0.5) * BAR);
-            // The figure gets a background where the line would cross it.
-            canvas.rect((from - 3.0, middle - 8.0), (small.width(figure) + 6.0, 16.0), WHITE, 1.0);
-            canvas.text(figure, (from, middle), &small);
+            let x = frame.at((*value, 0.0)).0;
+            canvas.line((x, frame.top - 6.0), (x, frame.bottom()), &Pen::new(INK, 1.2).dashed(5.0, 3.0));
+            canvas.text(name, (x + 5.0, frame.top - 12.0), &small);
         }
     })
+}
+
+/// What a bar comes to, and what it adds.
+fn figure(bar: &Bar, unit: &str) -> String {
+    if !bar.value.is_finite() {
+        return "-".to_string();
+    }
+    let sign = if bar.added < 0.0 { "−" } else { "+" };
+    format!("{} {unit} ({sign}{})", number(bar.value), number(bar.added.abs()))
+}
+
+/// From zero to the longest bar, or to the line.
+fn axis(input: &Bars) -> Axis {
+    let values = input.bars.iter().map(|bar| bar.value).chain(input.line.iter().map(|line| line.1));
+    let most = values.filter(|value| drawable(*value)).fold(0.0, f64::max);
+    let most = if most > 0.0 { most } else { 1.0 };
+    Axis::new([0.0, most], &Options { room: 8, ..Options::default() })
 }

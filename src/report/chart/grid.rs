@@ -7,8 +7,8 @@ use plotters::style::RGBColor;
 const CELL: f64 = 26.0;
 /// Column headings wrap at about this width.
 const HEADING: f64 = 130.0;
-/// The width of the sign in a cell.
-const SIGN: f64 = 20.0;
+/// The names of rows wrap at about this width.
+const NAME: f64 = 200.0;
 
 /// Rows by columns, with a verdict in each cell.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -93,14 +93,16 @@ pub fn grid(input: &Grid) -> String {
     let legend = legend_of(input);
     let top = head.height() + if legend.is_empty() { 0.0 } else { 34.0 };
     let body = top + plan.heading_height;
-    let height = body + CELL * input.rows.len().max(2) as f64 + MARGIN;
+    let height = body + plan.rows.iter().sum::<f64>().max(2.0 * CELL) + MARGIN;
     let width = plan.width().max(head.width()).max(420.0) + 2.0 * MARGIN;
     sheet(width, height, &input.title, |canvas| {
         head.draw(canvas, MARGIN);
         draw_legend(canvas, &legend, head.height() + 14.0);
         plan.draw_headings(canvas, body);
+        let mut row_top = body;
         for (i, row) in input.rows.iter().enumerate() {
-            plan.draw_row(canvas, row, body + i as f64 * CELL);
+            plan.draw_row(canvas, row, i, row_top);
+            row_top += plan.rows[i];
         }
         if plan.columns.is_empty() || input.rows.is_empty() {
             let font = Font::new(14.0, FAINT).anchor(Anchor::Middle);
@@ -113,7 +115,11 @@ pub fn grid(input: &Grid) -> String {
 struct Plan {
     columns: Vec<Vec<String>>,
     heading_height: f64,
+    /// The lines of each row's name, and the width of the longest.
+    lines: Vec<Vec<String>>,
     names: f64,
+    /// The height of each row.
+    rows: Vec<f64>,
     cells: Vec<f64>,
 }
 
@@ -131,15 +137,21 @@ impl Plan {
         let wrap = |text: &String| font.wrap(text, HEADING);
         let columns: Vec<Vec<String>> = input.columns.iter().map(wrap).collect();
         let heading_height = columns.iter().map(|c| longest(&font, c)).fold(0.0, f64::max) + 10.0;
-        let names: Vec<&str> = input.rows.iter().map(|r| r.name.as_str()).collect();
+        let lines: Vec<Vec<String>> = input.rows.iter().map(|row| font.wrap(&row.name, NAME)).collect();
+        let rows = input.rows.iter().zip(&lines).map(|(row, lines)| {
+            let figures = row.cells.iter().take(columns.len()).any(|cell| !cell.figure.trim().is_empty());
+            let cell = if figures { CELL + LEADING } else { CELL };
+            cell.max(LEADING * lines.len() as f64 + 8.0)
+        });
         let cell = |(i, lines): (usize, &Vec<String>)| {
             let figures = input.rows.iter().filter_map(|r| r.cells.get(i));
             let figures = figures.map(|c| figure_font(INK).width(&c.figure));
-            let widest = SIGN + 12.0 + figures.fold(0.0, f64::max);
-            widest.max(lines.len() as f64 * LEADING + 6.0).max(44.0)
+            let widest = 9.0 + figures.fold(0.0, f64::max);
+            widest.max(lines.len() as f64 * LEADING + 6.0).max(36.0)
         };
         let cells: Vec<f64> = columns.iter().enumerate().map(cell).collect();
-        Self { columns, heading_height, names: longest(&font, &names) + 10.0, cells }
+        let names = lines.iter().map(|lines| longest(&font, lines)).fold(0.0, f64::max) + 10.0;
+        Self { rows: rows.collect(), columns, heading_height, lines, names, cells }
     }
 
     fn width(&self) -> f64 {
@@ -161,23 +173,27 @@ impl Plan {
         }
     }
 
-    fn draw_row(&self, canvas: &mut Canvas<'_>, row: &Row, top: f64) {
+    fn draw_row(&self, canvas: &mut Canvas<'_>, row: &Row, index: usize, top: f64) {
         let font = name_font().anchor(Anchor::End);
-        let middle = top + CELL / 2.0;
-        canvas.text(&row.name, (self.x(0) - 8.0, middle), &font);
+        let (lines, height) = (&self.lines[index], self.rows[index]);
+        let middle = top + height / 2.0;
+        let first = middle - LEADING * (lines.len() as f64 - 1.0) / 2.0;
+        for (k, line) in lines.iter().enumerate() {
+            canvas.text(line, (self.x(0) - 8.0, first + LEADING * k as f64), &font);
+        }
         let none = Cell::default();
         for (i, &width) in self.cells.iter().enumerate() {
             let cell = row.cells.get(i).unwrap_or(&none);
             let x = self.x(i);
             let (fill, alpha) = cell.verdict.fill();
-            canvas.rect((x + 0.75, top + 0.75), (width - 1.5, CELL - 1.5), fill, alpha);
+            canvas.rect((x + 0.75, top + 0.75), (width - 1.5, height - 1.5), fill, alpha);
+            let center = x + width / 2.0;
             if cell.figure.trim().is_empty() {
-                draw_sign(canvas, cell.verdict, (x + width / 2.0, middle));
+                draw_sign(canvas, cell.verdict, (center, middle));
             } else {
-                draw_sign(canvas, cell.verdict, (x + SIGN / 2.0 + 3.0, middle));
-                let center = x + SIGN + (width - SIGN) / 2.0;
+                draw_sign(canvas, cell.verdict, (center, middle - 7.5));
                 let font = figure_font(cell.verdict.ink()).anchor(Anchor::Middle);
-                canvas.text(&cell.figure, (center, middle), &font);
+                canvas.text(&cell.figure, (center, middle + 8.5), &font);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Small multiples of cost against error, both logarithmic.
+//! Small multiples of cost against error, both logarithmic, one below the other: a page is not wide enough for two.
 
 use super::axis::{Axis, Options};
 use super::canvas::{Canvas, Font, INK, Pen, color, mark, sheet};
@@ -6,7 +6,7 @@ use super::front;
 use super::plot::{EndLabel, Frame, Head, Legend, MARGIN, Sign};
 use super::series::drawable;
 
-const WIDTH: f64 = 460.0;
+const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 250.0;
 /// Space above each plot for its title, and below it for its axis.
 const ABOVE: f64 = 40.0;
@@ -66,19 +66,17 @@ pub fn loglog(input: &LogLog) -> String {
     };
     let names = names(motions);
     let plan = Plan::new(input, motions, &names);
-    let columns = motions.len().min(2);
-    let rows = motions.len().div_ceil(columns);
-    let inner = plan.step * columns as f64;
+    let inner = plan.width;
     let head = Head::new(&input.title, &input.subtitle, inner);
     let legend = Legend::new(entries(&names), inner);
     let top = head.height() + 6.0 + legend.height;
     let width = inner.max(head.width()).max(legend.width) + 2.0 * MARGIN;
-    let height = top + (ABOVE + plan.height + BELOW) * rows as f64 + MARGIN / 2.0;
+    let height = top + (ABOVE + plan.height + BELOW) * motions.len() as f64 + MARGIN / 2.0;
     sheet(width, height, &input.title, |canvas| {
         head.draw(canvas, MARGIN);
         legend.draw(canvas, MARGIN, head.height() + 4.0);
         for (i, motion) in motions.iter().enumerate() {
-            let frame = plan.frame(i % columns, i / columns, top);
+            let frame = plan.frame(i, top);
             plan.draw(canvas, motion, &frame);
         }
     })
@@ -125,8 +123,8 @@ struct Plan<'a> {
     y: Axis,
     left: f64,
     height: f64,
-    /// Distance from one plot to the next on its right.
-    step: f64,
+    /// The width of a plot with its labels.
+    width: f64,
 }
 
 impl<'a> Plan<'a> {
@@ -148,12 +146,12 @@ impl<'a> Plan<'a> {
         let left = Frame::left_margin(&y, &input.y_label);
         let font = Font::new(super::plot::SMALL, INK).bold();
         let labels = names.iter().map(|n| font.width(n)).fold(0.0, f64::max);
-        Self { input, names, left, height, step: left + WIDTH + labels + 42.0, x, y }
+        Self { input, names, left, height, width: left + WIDTH + labels + 42.0, x, y }
     }
 
-    fn frame(&self, column: usize, row: usize, top: f64) -> Frame {
+    fn frame(&self, row: usize, top: f64) -> Frame {
         Frame {
-            left: self.left + self.step * column as f64,
+            left: self.left,
             top: top + ABOVE + (ABOVE + self.height + BELOW) * row as f64,
             width: WIDTH,
             height: self.height,

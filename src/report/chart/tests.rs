@@ -5,6 +5,7 @@ use super::canvas::{Font, INK};
 use super::series::{spread, thin};
 use super::*;
 
+mod bars;
 mod points;
 
 /// Units of a document to a pixel.
@@ -373,6 +374,7 @@ fn a_chart_without_data_says_so() {
         histogram(&Histogram::default()),
         curves(&Curves::default()),
         points(&Points::default()),
+        bars(&Bars::default()),
     ];
     for svg in pictures {
         assert_says(&svg, &["no data"]);

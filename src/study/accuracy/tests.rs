@@ -57,7 +57,7 @@ fn final_errors_are_those_computed_independently_within_two_percent() {
 fn errors_fall_with_the_order_that_the_table_gives() {
     let sines = Sines::three_axes();
     for method in METHODS {
-        let hz = if method.order > 4 { 10.0 } else { 160.0 };
+        let hz = if method.order > 4 { 20.0 } else { 160.0 };
         let (coarse, fine) =
             (error(method.name, &sines, hz, 48.0), error(method.name, &sines, 2.0 * hz, 48.0));
         let order = (coarse.error_deg / fine.error_deg).log2();
