@@ -54,6 +54,7 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
     assert!(text.contains("coning") && text.contains("magnus-4"), "{text}");
 
     let names = [
+        "accuracy-glance.svg",
         "accuracy.csv",
         "accuracy.json",
         "accuracy.svg",
@@ -86,12 +87,13 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
     let motions = ["A", "B", "C", "D", "coning"].map(String::from);
     assert_eq!(column(&accuracy, "motion"), motions.clone().into(), "the scene joins the built-in motions");
     let methods = column(&accuracy, "method");
-    assert!(methods.len() == 14 && methods == column(&stability, "method"), "{methods:?}");
+    assert!(methods.len() == 15 && methods == column(&stability, "method"), "{methods:?}");
     assert_eq!(column(&stability, "verdict"), ["stable", "degraded", "fails"].map(String::from).into());
     let drawn = words_of_svg(&out.join("accuracy.svg"));
     for word in motions.iter().chain(&methods) {
         assert!(drawn.contains(word.as_str()), "{word} in {drawn}");
     }
+    assert!(words_of_svg(&out.join("accuracy-glance.svg")).contains("what the paper prints"));
     assert!(words_of_svg(&out.join("stability.svg")).contains("paper"));
 }
 
@@ -105,7 +107,9 @@ fn one_study_writes_its_own_files_and_an_existing_folder_is_refused_before_anyth
     assert!(results["stability"].is_null() && results["quick"] == true, "{results}");
     assert_eq!(
         files(&out),
-        ["accuracy.csv", "accuracy.json", "accuracy.svg", "manifest.json"].map(String::from).into()
+        ["accuracy-glance.svg", "accuracy.csv", "accuracy.json", "accuracy.svg", "manifest.json"]
+            .map(String::from)
+            .into()
     );
     let rows = rows(&out.join("accuracy.csv")).1;
     assert_eq!(results["accuracy"].as_array().unwrap().len(), rows.len(), "the same rows for all");

@@ -1,5 +1,7 @@
 //! `ratetable study accuracy`: every method against every motion.
 
+mod glance;
+
 use super::{Outcome, Request, Study};
 use crate::cli::Refusal;
 use crate::cli::progress::Bar;
@@ -13,7 +15,8 @@ use crate::study::all_cores;
 use crate::study::motions::{self, Case, OfTrajectory};
 use std::time::Instant;
 
-pub(super) static STUDY: Study = Study { name: "accuracy", files: &["accuracy.csv", "accuracy.svg"], run };
+pub(super) static STUDY: Study =
+    Study { name: "accuracy", files: &["accuracy.csv", "accuracy.svg", "accuracy-glance.svg"], run };
 
 /// Final errors at these rates are shown.
 const SHOWN_RATES: [u32; 2] = [100, 1000];
@@ -29,7 +32,8 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
     let rows = accuracy::run(&cases, all_cores(), &|| start.elapsed(), &|done, all| bar.jobs(done, all));
     bar.clear();
     let outcome = Outcome::of("accuracy", &rows, table(&rows, &cases))?;
-    outcome.csv(&rows)?.file("accuracy.svg", chart(&rows, &cases))
+    let outcome = outcome.csv(&rows)?.file("accuracy.svg", chart(&rows, &cases))?;
+    outcome.file("accuracy-glance.svg", glance::chart(&rows, &cases))
 }
 
 /// The built-in motions, and the scene's own.
@@ -71,7 +75,7 @@ fn chart(rows: &[Row], cases: &[Case]) -> String {
     };
     chart::loglog(&LogLog {
         title: "What each attitude method costs and how far it ends from the truth".into(),
-        subtitle: format!("a point a sample rate, {}; one thread", rates(cases)),
+        subtitle: format!("{}; one thread", rates(cases)),
         x_label: "cost (ns per simulated second)".into(),
         y_label: "error at the end (deg)".into(),
         y_floor: Some(FLOOR),
@@ -79,12 +83,18 @@ fn chart(rows: &[Row], cases: &[Case]) -> String {
     })
 }
 
+/// The rates of most cases, and of each that has others.
 fn rates(cases: &[Case]) -> String {
-    let all = || cases.iter().flat_map(|case| &case.rates);
-    match (all().min(), all().max()) {
-        (Some(least), Some(most)) => format!("from {least} to {most} Hz, the lowest leftmost"),
-        _ => String::new(),
-    }
+    let span = |case: &Case| match (case.rates.iter().min(), case.rates.iter().max()) {
+        (Some(least), Some(most)) => format!("{least} to {most} Hz"),
+        _ => "no rate".to_string(),
+    };
+    let spans: Vec<String> = cases.iter().map(span).collect();
+    let common = |span: &&String| spans.iter().filter(|other| other == span).count();
+    let Some(usual) = spans.iter().max_by_key(common) else { return String::new() };
+    let others = cases.iter().zip(&spans).filter(|(_, span)| *span != usual);
+    let others: String = others.map(|(case, span)| format!(" (on {} {span})", case.name)).collect();
+    format!("a point a sample rate, the lowest leftmost: {usual}{others}")
 }
 
 /// Errors at [`SHOWN_RATES`], then the cheapest within each tolerance.
@@ -214,6 +224,14 @@ mod tests {
         for line in ["paper     1.0e-3  -", "coning-2  lost    -", "A       rates       paper 100 Hz (2e2)"] {
             assert!(text.contains(line), "{line} in\n{text}");
         }
+    }
+
+    #[test]
+    fn the_chart_says_which_rates_each_motion_has() {
+        let said = rates(&motions::built_in());
+        assert_eq!(said, "a point a sample rate, the lowest leftmost: 25 to 8000 Hz (on G 25 to 100 Hz)");
+        assert_eq!(rates(&motions::quick()), "a point a sample rate, the lowest leftmost: 100 to 1000 Hz");
+        assert_eq!(rates(&[]), "");
     }
 
     #[test]

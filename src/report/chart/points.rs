@@ -10,7 +10,7 @@ use super::series::drawable;
 /// The width of the whole, kept where the names beside the plot leave room.
 const WHOLE: f64 = 800.0;
 const NARROWEST: f64 = 420.0;
-const HEIGHT: f64 = 380.0;
+const HEIGHT: f64 = 320.0;
 /// A plot whose labels find no room becomes higher, up to this.
 const HIGHEST: f64 = 1000.0;
 /// The longest line of a label.
