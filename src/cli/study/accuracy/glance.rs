@@ -57,9 +57,7 @@ fn counts(row: &Row, case: &Case) -> bool {
 
 /// Whether no row is both cheaper and nearer the truth.
 fn on_front(row: &Row, of: &[&Row]) -> bool {
-    let beats =
-        |other: &&Row| other.ns_per_simulated_s < row.ns_per_simulated_s && error(other) <= error(row);
-    !of.iter().any(|other| beats(other))
+    !of.iter().any(|other| other.ns_per_simulated_s < row.ns_per_simulated_s && error(other) <= error(row))
 }
 
 /// An error, of which nothing below the floor counts.
