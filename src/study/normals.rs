@@ -19,6 +19,7 @@
 
 mod histogram;
 mod inverse;
+mod makers;
 mod pairs;
 mod ways;
 mod ziggurat;
@@ -26,10 +27,11 @@ mod ziggurat;
 pub(crate) use histogram::Histogram;
 
 use crate::parallel::{self, Progress};
+use makers::CHUNK;
 use serde::Serialize;
 use std::hint::black_box;
 use std::time::Duration;
-use ways::{CHUNK, WAYS, Way};
+use ways::{WAYS, Way};
 
 /// A line of `normals.csv`; the fields are its columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -17,7 +17,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("quantity", &["double"]),
     // Normal numbers are made with the processor's widest vectors, which only `os` may ask for; so are the columns of
     // motion, sensor and study.
-    ("random", &["os"]),
+    ("random", &["double", "os"]),
     ("geometry", &[]),
     // A key is declared with the kind of quantity it takes, and a value may be a time or an attitude.
     ("keys", &["double", "quantity", "time", "geometry"]),

@@ -5,7 +5,7 @@
 //! of the part. Beyond the table, once in 2¹⁴ numbers, Φ⁻¹ itself is solved by Newton's steps, with 53 bits more.
 
 use super::histogram::below;
-use super::ways::{CHUNK, Convert};
+use super::makers::{CHUNK, Convert};
 use crate::double::polynomial;
 use crate::random::Stream;
 use rand::Rng;

@@ -1,6 +1,6 @@
 //! Box and Muller's pairs with polynomials of several lengths, and in single precision.
 
-use super::ways::{CHUNK, Convert};
+use super::makers::{CHUNK, Convert};
 use crate::random::Stream;
 use crate::random::box_muller::{self, PAIRS, Polynomials};
 use rand::SeedableRng;

@@ -1,5 +1,5 @@
 use super::inverse::Inverse;
-use super::ways::{CHUNK, Maker, from};
+use super::makers::{Maker, from};
 use super::*;
 use std::cell::Cell;
 

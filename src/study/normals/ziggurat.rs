@@ -7,7 +7,7 @@
 //! others draw a height, or one beyond the last layer: what comes out has the normal density to the last bit of its
 //! place, out to 13 σ.
 
-use super::ways::{CHUNK, Convert};
+use super::makers::{CHUNK, Convert};
 use crate::random::Stream;
 use rand::Rng;
 
