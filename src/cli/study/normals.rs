@@ -42,8 +42,8 @@ fn table(rows: &[Row]) -> String {
     let lines: Vec<_> = rows.iter().map(line).collect();
     let about = rows.first().map_or(String::new(), |row| {
         format!(
-            "{} numbers each; by chance alone a KS distance is below {:.1e} in 95 of 100 runs, a z below 2 in 95 of 100 counts\n",
-            number(row.draws as f64),
+            "{} million numbers each; by chance alone a KS distance is below {:.1e} in 95 of 100 runs, a z below 2 in 95 of 100 counts\n",
+            number(row.draws as f64 / 1e6),
             row.ks_by_chance
         )
     });
@@ -67,7 +67,7 @@ fn chart(rows: &[Row]) -> String {
         spread: None,
     };
     let shown = rows.first().map_or(f64::NAN, |row| 1.0 / libm::sqrt(row.draws as f64));
-    let draws = rows.first().map_or(String::new(), |row| number(row.draws as f64));
+    let draws = rows.first().map_or(String::new(), |row| number(row.draws as f64 / 1e6));
     chart::points(&Points {
         title: "What a normal number costs and how exact it is".into(),
         subtitle: "one thread, random bits included; lower is more exact, further left is cheaper".into(),
@@ -77,7 +77,7 @@ fn chart(rows: &[Row]) -> String {
         y_floor: Some(FLOOR),
         groups: GROUPS.map(String::from).into(),
         points: rows.iter().map(point).collect(),
-        levels: vec![Level { name: format!("{draws} samples could show"), y: shown }],
+        levels: vec![Level { name: format!("{draws} million samples could show"), y: shown }],
         front: true,
         ..Points::default()
     })
