@@ -409,7 +409,9 @@ fn a_controllers_attitude_is_asked_for_and_recorded_for_score() {
         let told = attitude_quaternion::Repr { time_boot_ms: 100_000 + 20 * k, q, ..Default::default() };
         stream.write_all(&packet(&Message::AttitudeQuaternion(told))).unwrap();
     }
-    drop(stream);
+    // Closed with something unread, a socket would reset the other side, which then loses what it has not read.
+    stream.shutdown(std::net::Shutdown::Write).unwrap();
+    while next(&mut stream).is_some() {}
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success(), "{}", said(&output));
     assert!(said(&output).contains("50 attitudes; `ratetable score TRUTH"), "{}", said(&output));
