@@ -155,16 +155,14 @@ const COSINE: [f64; 6] = [
 /// The minimax polynomials of fdlibm (`k_sin.c` and `k_cos.c`, Sun Microsystems 1993). Here the argument comes with
 /// its tail already, and one reduction serves both: twice as fast as two calls that each reduce again.
 fn eighth_turn(angle: Double) -> (f64, f64) {
-    const S: [f64; 6] = SINE;
-    const C: [f64; 6] = COSINE;
     let Double { hi: x, lo: tail } = angle;
     let square = x * x;
     let fourth = square * square;
     let cube = square * x;
-    let r = S[1] + square * (S[2] + square * S[3]) + square * fourth * (S[4] + square * S[5]);
-    let sin = x - ((square * (0.5 * tail - cube * r) - tail) - cube * S[0]);
-    let r = square * (C[0] + square * (C[1] + square * C[2]))
-        + fourth * fourth * (C[3] + square * (C[4] + square * C[5]));
+    let r = SINE[1] + square * (SINE[2] + square * SINE[3]) + square * fourth * (SINE[4] + square * SINE[5]);
+    let sin = x - ((square * (0.5 * tail - cube * r) - tail) - cube * SINE[0]);
+    let r = square * (COSINE[0] + square * (COSINE[1] + square * COSINE[2]))
+        + fourth * fourth * (COSINE[3] + square * (COSINE[4] + square * COSINE[5]));
     let half = 0.5 * square;
     let whole = 1.0 - half;
     let cos = whole + (((1.0 - whole) - half) + (square * r - x * tail));

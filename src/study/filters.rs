@@ -23,7 +23,7 @@
 
 mod cost;
 mod judge;
-mod play;
+pub(super) mod play;
 pub mod scenes;
 pub mod stability;
 

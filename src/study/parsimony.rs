@@ -199,7 +199,7 @@ fn filters(
     trials: &Trials<'_>,
     progress: Progress,
 ) -> Result<Vec<Vec<FilterChange>>, SceneError> {
-    let read = |part: Part| trials.runs.iter().any(|run| run.reads(part.sensor));
+    let read = |part: Part| trials.runs.iter().any(|run| scores::reads(run, part.sensor));
     let variants = without.iter().filter(|(part, _)| read(*part)).map(|(_, variant)| variant);
     let played: Vec<&Variant> = [whole].into_iter().chain(variants).collect();
     if played.len() == 1 {

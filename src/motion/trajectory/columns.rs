@@ -149,7 +149,7 @@ impl Trajectory {
         since.extend(times.iter().map(|&t| SimTime(t.0 - segment.start.0)));
         if wants.attitude || wants.force || wants.field {
             let stepped = Stepped::new(&*segment.motion, rate, segment.attitude);
-            stepped.cells(since, scratch, |_, cell| {
+            stepped.cells(since, scratch, |cell| {
                 if wants.attitude {
                     cell.attitudes(attitude);
                 }

@@ -21,10 +21,14 @@ pub struct Played {
 
 /// Plays all of a plan.
 pub fn play(plan: &Plan) -> Played {
+    play_by(Player::new(plan, plan.duration, BLOCK), plan)
+}
+
+/// What a player of this plan makes.
+pub fn play_by(mut player: Player<'_>, plan: &Plan) -> Played {
     let begin = plan.trajectory.at(SimTime::ZERO);
     let field = begin.attitude.apply(begin.field).v;
     let mut played = Played { declination: libm::atan2(field.y, field.x), ..Played::default() };
-    let mut player = Player::new(plan, plan.duration, BLOCK);
     let Ok(()) = player.play(|moment| {
         for reading in moment.readings {
             let Some(triad) = reading.body() else { continue };

@@ -3,8 +3,9 @@
 use super::paired::{Finding, Paired};
 use super::parts::Part;
 use super::readings::{A_TENTH, Change, HALF_A_COUNT};
-use super::scores::{Run, Scores};
+use super::scores::{self, Scores};
 use crate::sensor::SensorKind;
+use crate::study::filters::Subject;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -119,13 +120,13 @@ impl FilterChange {
 
 /// Of every filter that reads the sensor, if one is meant.
 pub fn filter_changes(
-    runs: &[Run],
+    runs: &[Subject],
     sensor: Option<SensorKind>,
     with: &Scores,
     without: &Scores,
 ) -> Vec<FilterChange> {
-    let of = |(i, run): (usize, &Run)| FilterChange::new(run.name(), &with.of(i), &without.of(i));
-    runs.iter().enumerate().filter(|(_, run)| run.reads(sensor)).filter_map(of).collect()
+    let of = |(i, run): (usize, &Subject)| FilterChange::new(run.name(), &with.of(i), &without.of(i));
+    runs.iter().enumerate().filter(|(_, run)| scores::reads(run, sensor)).filter_map(of).collect()
 }
 
 /// The filter that decides: the one with the largest change in margins, of those with the gravest finding.
