@@ -11,6 +11,11 @@ fn study(arguments: &[&str]) -> Command {
     command
 }
 
+/// What it prints as JSON.
+fn printed(arguments: &[&str]) -> serde_json::Value {
+    serde_json::from_slice(&study(arguments).assert().success().get_output().stdout).unwrap()
+}
+
 /// What it says when it refuses.
 fn refusal(arguments: &[&str]) -> String {
     let output = study(arguments).assert().code(2).stdout("").get_output().stderr.clone();
@@ -115,8 +120,7 @@ fn one_study_writes_its_own_files_and_an_existing_folder_is_refused_before_anyth
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("study");
     let arguments = ["accuracy", "--quick", "--json", "--out", out.to_str().unwrap()];
-    let done = study(&arguments).assert().success();
-    let results: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    let results = printed(&arguments);
     assert!(results["stability"].is_null() && results["quick"] == true, "{results}");
     assert_eq!(
         files(&out),
@@ -175,8 +179,7 @@ fn the_cost_of_a_scene_is_told_term_by_term() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("study");
     let arguments = ["cost", "mpu-9250", "--quick", "--json", "--out", out.to_str().unwrap()];
-    let done = study(&arguments).assert().success();
-    let cost: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    let cost = printed(&arguments);
     assert_eq!(cost["scene"], "mpu-9250");
     for field in ["samples", "nine_axis_samples_per_s", "floor_samples_per_s", "ratio", "normals_per_sample"]
     {
@@ -195,8 +198,7 @@ fn the_cost_of_a_scene_is_told_term_by_term() {
     // Without noise there is no floor to be set against.
     let quiet = folder.path().join("quiet.toml");
     std::fs::write(&quiet, "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\n").unwrap();
-    let done = study(&["cost", quiet.to_str().unwrap(), "--quick", "--json"]).assert().success();
-    let cost: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    let cost = printed(&["cost", quiet.to_str().unwrap(), "--quick", "--json"]);
     assert!(cost["ratio"].is_null() && cost["nine_axis_samples_per_s"].as_f64().unwrap() > 0.0, "{cost}");
 }
 
@@ -289,8 +291,7 @@ fn filters_are_measured_on_scenes_and_through_what_breaks_them() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("study");
     let arguments = ["filters", "coning-mems", "--quick", "--json", "--out", out.to_str().unwrap()];
-    let done = study(&arguments).assert().success();
-    let results: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    let results = printed(&arguments);
     let names = [
         "filters-glance.svg",
         "filters-stability.csv",
