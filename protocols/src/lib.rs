@@ -28,6 +28,7 @@ mod message;
 pub mod betaflight;
 mod bytes;
 mod checksum;
+pub mod chip;
 pub mod cobs;
 mod error;
 pub mod ilabs;
