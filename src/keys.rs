@@ -184,6 +184,11 @@ impl Values {
         self.0.insert(key, value);
     }
 
+    /// Takes over every value that `newer` has.
+    pub fn take_over(&mut self, newer: &Values) {
+        self.0.extend(newer.0.iter().map(|(key, value)| (*key, value.clone())));
+    }
+
     /// Whether the key has a value.
     pub fn has(&self, key: impl Into<&'static str>) -> bool {
         self.0.contains_key(key.into())

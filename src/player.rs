@@ -22,14 +22,16 @@ pub use feed::Feed;
 
 use crate::earth::Place;
 use crate::geometry::{Body, Nav, Vector};
+use crate::keys::KeyError;
 use crate::motion::{Trajectory, Truth, TruthColumns, Wants};
 use crate::scene::Plan;
 use crate::schedule::{Schedule, Ticks};
 use crate::sensor::{
-    Block, Fix, Measured, Measurement, Position, REFERENCE_TEMPERATURE, Reading, Senses, Sensor, SensorKind,
-    SensorPlan, Shape,
+    Block, Fix, Measured, Measurement, Position, REFERENCE_TEMPERATURE, Reading, Segment, Senses, Sensor,
+    SensorKind, SensorPlan, Setting, Shape,
 };
 use crate::time::SimTime;
+use std::collections::VecDeque;
 
 /// The default number of distinct ticks in a block.
 pub const BLOCK: usize = 256;
@@ -73,6 +75,9 @@ struct Channel {
     /// Samples in earlier blocks.
     done: u64,
     feed: Feed,
+    /// What it is set to now, and later, in order of time, at work.
+    now: Segment,
+    later: VecDeque<(Segment, Sensor)>,
 }
 
 /// Plays a plan.
@@ -86,6 +91,8 @@ pub struct Player<'a> {
     /// Which sensors are due at each of its times: bit i is set for sensor i.
     due: Vec<u32>,
     block: usize,
+    end: SimTime,
+    seed: u64,
 }
 
 impl<'a> Player<'a> {
@@ -107,51 +114,125 @@ impl<'a> Player<'a> {
         block: usize,
         build: impl Fn(&SensorPlan) -> Sensor,
     ) -> Player<'a> {
-        let ticks = plan.sensors.iter().map(|sensor| Ticks { rate: sensor.clock(), phase: sensor.phase });
         let origin = plan.origin();
-        let channels = plan.sensors.iter().map(|plan_of| {
-            let sensor = build(plan_of);
-            let feed = Feed::new(plan_of, origin, plan.seed, &sensor);
-            Channel { kind: plan_of.kind, origin, sensor, block: Block::default(), done: 0, feed }
+        let channels = plan.sensors.iter().map(|of| {
+            let mut segments = of.segments().into_iter().map(|segment| (build(&segment.plan), segment));
+            let (sensor, now) = segments.next().unwrap_or_else(|| (build(of), of.first()));
+            let later = segments.map(|(sensor, segment)| (segment, sensor)).collect();
+            let feed = Feed::new(&now.plan, origin, plan.seed, &sensor);
+            Channel { kind: of.kind, origin, sensor, block: Block::default(), done: 0, feed, now, later }
         });
         let channels: Vec<_> = channels.collect();
-        Player {
+        let wants = channels.iter().fold(Wants::NONE, |wants, channel| wants | channel.feed.wants());
+        let mut player = Player {
             trajectory: &plan.trajectory,
-            schedule: Schedule::new(ticks, end),
-            wants: channels.iter().fold(Wants::NONE, |wants, channel| wants | channel.feed.wants()),
+            schedule: Schedule::new([], end),
+            wants,
             channels,
             truth: TruthColumns::default(),
             due: Vec::with_capacity(block),
             block: block.max(1),
+            end,
+            seed: plan.seed,
+        };
+        (0..player.channels.len()).for_each(|sensor| player.reschedule(sensor));
+        player
+    }
+
+    fn reschedule(&mut self, sensor: usize) {
+        let Segment { from, clock, .. } = self.channels[sensor].now;
+        self.schedule.set(sensor, clock.map(|rate| Ticks { rate, phase: from }));
+    }
+
+    /// Sets one of the plan's sensors from its first tick at or after the setting's start on, which is not before what was
+    /// played.
+    ///
+    /// # Errors
+    /// A value that cannot be.
+    pub fn set(&mut self, sensor: usize, setting: &Setting) -> Result<(), KeyError> {
+        let channel = &mut self.channels[sensor];
+        let last = channel.later.back().map_or(&channel.now, |(segment, _)| segment);
+        let next = last.then(setting);
+        let built = Sensor::new(&next.plan, self.seed)?;
+        if channel.later.back().is_some_and(|(last, _)| next.from <= last.from) {
+            channel.later.pop_back();
+        }
+        channel.later.push_back((next, built));
+        Ok(())
+    }
+
+    /// When the next setting takes effect.
+    fn next_setting(&self) -> SimTime {
+        let next = self.channels.iter().filter_map(|channel| Some(channel.later.front()?.0.from));
+        next.min().unwrap_or(SimTime::FOREVER)
+    }
+
+    /// Lets every setting of this time take effect.
+    fn take_settings(&mut self, t: SimTime) {
+        for sensor in 0..self.channels.len() {
+            let origin = self.channels[sensor].origin;
+            let channel = &mut self.channels[sensor];
+            let Some((now, built)) = channel.later.pop_front_if(|(segment, _)| segment.from == t) else {
+                continue;
+            };
+            let before = std::mem::replace(&mut channel.sensor, built);
+            channel.sensor.resume(&before);
+            channel.feed.set(Feed::new(&now.plan, origin, self.seed, &channel.sensor));
+            channel.now = now;
+            self.wants = self.wants | channel.feed.wants();
+            self.reschedule(sensor);
         }
     }
 
-    /// Computes the next block, with so much of the truth; false at the end.
-    fn next_block(&mut self, wants: Wants) -> bool {
+    /// Computes the next block of ticks before `until`, with so much of the truth; false where there is none.
+    fn next_block(&mut self, wants: Wants, until: SimTime) -> bool {
         for channel in &mut self.channels {
             channel.done += channel.block.len() as u64;
             channel.block.clear();
         }
-        self.schedule.fill(self.block, &mut self.truth.t, &mut self.due);
+        loop {
+            let setting = self.next_setting();
+            self.schedule.fill(self.block, until.min(setting), &mut self.truth.t, &mut self.due);
+            if !self.due.is_empty() {
+                break;
+            }
+            if setting >= until.min(self.end) {
+                return false;
+            }
+            self.take_settings(setting);
+        }
         self.trajectory.fill(&mut self.truth, self.wants | wants);
         for (i, channel) in self.channels.iter_mut().enumerate() {
             channel.fill(1 << i, &self.due, &self.truth, self.trajectory);
         }
-        !self.due.is_empty()
+        true
     }
 
     /// Computes the next block and returns it as columns, one sensor at a time: the fastest way where no order
     /// across sensors is needed. `wants` are the columns of the truth that the caller reads; `None` at the end.
     pub fn play_columns(&mut self, wants: Wants) -> Option<Columns<'_>> {
-        self.next_block(wants).then_some(Columns { truth: &self.truth, channels: &self.channels })
+        self.next_block(wants, SimTime::FOREVER)
+            .then_some(Columns { truth: &self.truth, channels: &self.channels })
     }
 
     /// Computes the next block and passes each of its moments to `each`, in time order; false at the end.
     ///
     /// # Errors
     /// An error of `each` stops the block and is returned.
-    pub fn play_block<E>(&mut self, mut each: impl FnMut(Moment<'_>) -> Result<(), E>) -> Result<bool, E> {
-        if !self.next_block(Wants::ALL) {
+    pub fn play_block<E>(&mut self, each: impl FnMut(Moment<'_>) -> Result<(), E>) -> Result<bool, E> {
+        self.play_block_before(SimTime::FOREVER, each)
+    }
+
+    /// The same with the ticks before `until` alone, which may be later at the next call; false where there are no more.
+    ///
+    /// # Errors
+    /// As [`Player::play_block`].
+    pub fn play_block_before<E>(
+        &mut self,
+        until: SimTime,
+        mut each: impl FnMut(Moment<'_>) -> Result<(), E>,
+    ) -> Result<bool, E> {
+        if !self.next_block(Wants::ALL, until) {
             return Ok(false);
         }
         let mut at = [0; 32];
@@ -253,3 +334,5 @@ pub fn sensed(kind: SensorKind, truth: &Truth) -> Vector<Body> {
 
 #[cfg(test)]
 mod aids_tests;
+#[cfg(test)]
+mod settings_tests;

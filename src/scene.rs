@@ -32,6 +32,7 @@ mod reference;
 mod rest;
 mod section;
 mod sensors;
+pub mod settings;
 mod suggest;
 mod sweep;
 mod target;
@@ -146,7 +147,7 @@ impl Plan {
     /// The faults of sensors that acted on a sample before `end`: `gyro stuck from 2 s to 3 s`.
     pub fn faults_until(&self, end: SimTime) -> Vec<String> {
         let of = |sensor: &SensorPlan| {
-            let before = |t: SimTime| sensor.clock().ticks_before(sensor.phase, t);
+            let before = |t: SimTime| sensor.ticks_before(t);
             let acted = sensor.faults.iter().filter(|fault| before(fault.start) < before(fault.end.min(end)));
             acted.map(|fault| format!("{} {fault}", sensor.kind)).collect::<Vec<_>>()
         };
@@ -230,6 +231,7 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     let reference =
         reference::reference(&top, sensors.complete.then_some(&sensors.plans), &trajectory).unzip();
     let faults = faults::faults(&top, &mut sensors.plans, &mut outputs.outputs);
+    let settings = settings::settings(&top, &mut sensors.plans);
     if sensors.plans.iter().any(|sensor| !sensor.kind.is_triad()) {
         start.settle_velocity(trajectory.start_velocity(), axes);
         vehicle::misfits(&trajectory, axes).into_iter().for_each(|warning| reader.warn(warning));
@@ -257,9 +259,12 @@ fn read(reader: &Reader, table: Table, name: &str) -> Plan {
     for (key, table) in [("start", start.resolved), ("earth", earth.resolved)] {
         resolved.insert(key.into(), table.into());
     }
-    for (key, tables) in
-        [("motion", motions.resolved), ("force", forces.resolved), ("fault", faults.resolved)]
-    {
+    for (key, tables) in [
+        ("motion", motions.resolved),
+        ("force", forces.resolved),
+        ("fault", faults.resolved),
+        ("setting", settings),
+    ] {
         if !tables.is_empty() {
             resolved.insert(key.into(), tables.into());
         }

@@ -47,44 +47,54 @@ struct Group {
 impl Schedule {
     /// Of these sensors, up to but not including `end`.
     pub fn new(sensors: impl IntoIterator<Item = Ticks>, end: SimTime) -> Schedule {
-        let mut groups: Vec<Group> = Vec::new();
+        let mut schedule = Schedule { groups: Vec::new(), end };
         for (i, ticks) in sensors.into_iter().enumerate() {
-            match groups.iter_mut().find(|group| group.ticks == ticks) {
-                Some(group) => group.sensors |= 1 << i,
-                None => groups.push(Group { ticks, sensors: 1 << i, k: 0, next: ticks.phase }),
-            }
+            schedule.add(i, ticks);
         }
-        Schedule { groups, end }
+        schedule
     }
-}
 
-impl Schedule {
-    /// Replaces what is in `times` and `sensors` by the next `count` distinct ticks, or by those that remain: when, and
-    /// of which sensors.
-    pub fn fill(&mut self, count: usize, times: &mut Vec<SimTime>, sensors: &mut Vec<u32>) {
+    fn add(&mut self, sensor: usize, ticks: Ticks) {
+        match self.groups.iter_mut().find(|group| group.ticks == ticks && group.k == 0) {
+            Some(group) => group.sensors |= 1 << sensor,
+            None => self.groups.push(Group { ticks, sensors: 1 << sensor, k: 0, next: ticks.phase }),
+        }
+    }
+
+    /// Gives a sensor other ticks, or none, in the place of those that it would still have.
+    pub fn set(&mut self, sensor: usize, ticks: Option<Ticks>) {
+        self.groups.iter_mut().for_each(|group| group.sensors &= !(1 << sensor));
+        self.groups.retain(|group| group.sensors != 0);
+        if let Some(ticks) = ticks {
+            self.add(sensor, ticks);
+        }
+    }
+
+    /// Replaces what is in `times` and `sensors` by the next `count` distinct ticks before `until`, or by those that
+    /// remain: when, and of which sensors.
+    pub fn fill(&mut self, count: usize, until: SimTime, times: &mut Vec<SimTime>, sensors: &mut Vec<u32>) {
         times.clear();
         sensors.clear();
+        let end = self.end.min(until);
         if let [group] = &mut self.groups[..] {
             let Ticks { rate, phase } = group.ticks;
             rate.extend_ticks(phase, group.k, count as u64, times);
-            times.truncate(times.partition_point(|&t| t < self.end));
+            times.truncate(times.partition_point(|&t| t < end));
             sensors.resize(times.len(), group.sensors);
             group.k += times.len() as u64;
             group.next = group.ticks.phase + group.ticks.rate.tick(group.k);
             return;
         }
-        for due in self.take(count) {
+        while times.len() < count
+            && let Some(due) = self.take_before(end)
+        {
             times.push(due.t);
             sensors.push(due.sensors);
         }
     }
-}
 
-impl Iterator for Schedule {
-    type Item = Due;
-
-    fn next(&mut self) -> Option<Due> {
-        let t = self.groups.iter().map(|group| group.next).min().filter(|&t| t < self.end)?;
+    fn take_before(&mut self, end: SimTime) -> Option<Due> {
+        let t = self.groups.iter().map(|group| group.next).min().filter(|&t| t < end)?;
         let mut sensors = 0;
         for group in self.groups.iter_mut().filter(|group| group.next == t) {
             sensors |= group.sensors;
@@ -92,6 +102,14 @@ impl Iterator for Schedule {
             group.next = group.ticks.phase + group.ticks.rate.tick(group.k);
         }
         Some(Due { t, sensors })
+    }
+}
+
+impl Iterator for Schedule {
+    type Item = Due;
+
+    fn next(&mut self) -> Option<Due> {
+        self.take_before(self.end)
     }
 }
 
@@ -119,7 +137,7 @@ mod tests {
             let (mut schedule, mut all) = (Schedule::new(sensors, end), Vec::new());
             let (mut times, mut masks) = (Vec::new(), Vec::new());
             for count in [1, 2, 64, 300].into_iter().cycle() {
-                schedule.fill(count, &mut times, &mut masks);
+                schedule.fill(count, SimTime::FOREVER, &mut times, &mut masks);
                 if times.is_empty() {
                     break;
                 }
@@ -153,5 +171,27 @@ mod tests {
         for (count, ticks) in counts.iter().zip(sensors) {
             assert_eq!(*count, ticks.rate.ticks_before(ticks.phase, end));
         }
+    }
+
+    #[test]
+    fn a_sensor_with_other_ticks_leaves_its_group_and_joins_those_that_begin_with_it() {
+        let mut schedule = Schedule::new([at(1000), at(1000), at(500)], SimTime(6_000_000));
+        let mut take = |schedule: &mut Schedule, until| {
+            let (mut times, mut masks) = (Vec::new(), Vec::new());
+            schedule.fill(100, SimTime(until), &mut times, &mut masks);
+            times.into_iter().map(|t| t.0).zip(masks).collect::<Vec<_>>()
+        };
+        assert_eq!(take(&mut schedule, 2_000_000), [(0, 0b111), (1_000_000, 0b011)]);
+        let slower = Ticks { rate: Rate::hz(250), phase: SimTime(2_000_000) };
+        schedule.set(0, Some(slower));
+        schedule.set(2, Some(slower));
+        assert_eq!(schedule.groups.len(), 2);
+        assert_eq!(
+            take(&mut schedule, 5_000_000),
+            [(2_000_000, 0b111), (3_000_000, 0b010), (4_000_000, 0b010)]
+        );
+        schedule.set(1, None);
+        assert_eq!(take(&mut schedule, 100_000_000), [], "the next of the others is at the end");
+        assert_eq!(schedule.next(), None);
     }
 }

@@ -41,6 +41,7 @@ mod range;
 mod reading;
 mod resolution;
 mod scale_temperature;
+pub mod setting;
 mod soft_iron;
 mod strides;
 mod temperature;
@@ -67,6 +68,7 @@ pub use matrix::matrix;
 pub use mount::Mount;
 pub use nonlinearity::NONLINEARITY;
 pub use reading::{Fix, Measured, Measurement, Position, Reading};
+pub use setting::{Segment, Setting};
 pub use temperature::{REFERENCE as REFERENCE_TEMPERATURE, TEMPERATURE};
 pub use units::Units;
 pub use vibration::VIBRATION;
@@ -106,6 +108,10 @@ pub struct SensorPlan {
     pub values: Values,
     /// What it does wrong for a while, in the order written.
     pub faults: Vec<Fault>,
+    /// What it is set to while the scene plays, in order of time.
+    pub settings: Vec<Setting>,
+    /// How often it has been set since its first tick: its noise goes on with other random numbers each time.
+    pub epoch: u32,
 }
 
 impl SensorPlan {
@@ -125,6 +131,7 @@ impl SensorPlan {
             sampling: self.sampling,
             mount,
             seed,
+            epoch: self.epoch,
         }
     }
 }
@@ -146,6 +153,8 @@ pub struct Context {
     pub mount: Mount,
     /// The scene's seed.
     pub seed: u64,
+    /// How often the sensor has been set to something else.
+    pub epoch: u32,
 }
 
 impl Context {
@@ -154,10 +163,22 @@ impl Context {
         random::axes(self.seed, &format!("{}/{term}", self.sensor))
     }
 
+    /// The same, new after each setting of the sensor.
+    pub fn fresh_streams(&self, term: &str) -> [Stream; 3] {
+        random::axes(self.seed, &self.fresh(term))
+    }
+
     /// Normal numbers of those streams, on the axes on which `size` is not zero.
     pub fn normals(&self, term: &str, size: DVec3) -> Normals {
         let wanted = size.to_array().map(|size| size != 0.0);
-        random::normals(self.seed, &format!("{}/{term}", self.sensor), wanted)
+        random::normals(self.seed, &self.fresh(term), wanted)
+    }
+
+    fn fresh(&self, term: &str) -> String {
+        match self.epoch {
+            0 => format!("{}/{term}", self.sensor),
+            epoch => format!("{}/{term}#{epoch}", self.sensor),
+        }
     }
 }
 
@@ -179,6 +200,14 @@ pub trait Term: Send {
     fn normals(&self) -> usize {
         0
     }
+
+    /// What a sensor that is set to something else goes on with: the bias where it has wandered to.
+    fn state(&self) -> Vec<DVec3> {
+        Vec::new()
+    }
+
+    /// Goes on with such a state.
+    fn resume(&mut self, _state: &[DVec3]) {}
 }
 
 /// Where in the chain a term acts.
@@ -260,6 +289,7 @@ pub struct Sensor {
     biases: Vec<Box<dyn Term>>,
     readings: Vec<Box<dyn Term>>,
     names: Vec<&'static str>,
+    bias_names: Vec<&'static str>,
     needs: Vec<Column>,
 }
 
@@ -284,7 +314,10 @@ impl Sensor {
                 sensor.needs.extend(kind.needs);
                 match kind.stage {
                     Stage::Signal => sensor.signals.push(term),
-                    Stage::Bias => sensor.biases.push(term),
+                    Stage::Bias => {
+                        sensor.bias_names.push(kind.name);
+                        sensor.biases.push(term);
+                    }
                     Stage::Reading => sensor.readings.push(term),
                 }
             }
@@ -306,6 +339,16 @@ impl Sensor {
     /// Normal numbers that its terms draw for each sample.
     pub fn normals(&self) -> usize {
         self.signals.iter().chain(&self.biases).chain(&self.readings).map(|term| term.normals()).sum()
+    }
+
+    /// Goes on where the same sensor was, which has been set to something else.
+    pub fn resume(&mut self, before: &Sensor) {
+        // Only biases have a state that a setting leaves.
+        let states = |sensor: &Sensor| sensor.biases.iter().map(|term| term.state()).collect::<Vec<_>>();
+        if self.bias_names == before.bias_names {
+            let states = states(before);
+            self.biases.iter_mut().zip(&states).for_each(|(term, state)| term.resume(state));
+        }
     }
 
     /// Whether a term needs this of the truth.

@@ -25,7 +25,7 @@ pub struct Bounds {
 impl Bounds {
     /// Of a plan.
     pub fn of(plan: &Plan, end: SimTime) -> Bounds {
-        let samples = |sensor: &SensorPlan| sensor.clock().ticks_before(sensor.phase, end);
+        let samples = |sensor: &SensorPlan| sensor.ticks_before(end);
         let all = plan.sensors.iter().map(samples).fold(0, u64::saturating_add);
         let reference =
             plan.reference.map_or(0, |reference| reference.rate().ticks_before(SimTime::ZERO, end));

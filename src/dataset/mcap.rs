@@ -112,9 +112,8 @@ fn with_errors(
 /// The shape of each table's rows.
 fn shapes(plan: &Plan, tables: &[Table]) -> Vec<Shape> {
     let find = |kind| plan.sensors.iter().find(|sensor| sensor.kind == kind);
-    let ticks = |sensor: &SensorPlan| (sensor.rate, sensor.phase);
-    let (gyro, accel) = (find(SensorKind::Gyro).map(ticks), find(SensorKind::Accel).map(ticks));
-    let together = gyro.is_some() && gyro == accel;
+    let pair = find(SensorKind::Gyro).zip(find(SensorKind::Accel));
+    let together = pair.is_some_and(|(gyro, accel)| gyro.ticks_with(accel));
     let sensor = |sensor: &SensorPlan| match (sensor.kind, together) {
         (SensorKind::Gyro, true) => Shape::Held,
         (SensorKind::Gyro, false) => Shape::Gyro,

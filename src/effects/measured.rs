@@ -45,7 +45,7 @@ fn error_free(survey: &Survey<'_>, sensor: &Sensor) -> Block {
     let (mut block, mut feed) =
         (Block::default(), Feed::new(plan, survey.plan.origin(), survey.plan.seed, sensor));
     for k in 0..survey.ticks.min(ticks_of(survey.plan, plan)) {
-        let t = plan.phase + plan.clock().tick(k);
+        let t = plan.tick(k);
         feed.push(t, &path.at(t), path, &mut block);
     }
     block

@@ -52,7 +52,7 @@ pub struct Survey<'a> {
 impl<'a> Survey<'a> {
     /// Looks at the sensor's ticks in the scene.
     pub fn new(plan: &'a Plan, sensor: &'a SensorPlan) -> Survey<'a> {
-        let before = |end| sensor.clock().ticks_before(sensor.phase, end);
+        let before = |end| sensor.ticks_before(end);
         let ticks = before(plan.duration);
         let most = most(plan, sensor);
         let mut chosen: Vec<u64> = (0..ticks).step_by(ticks.div_ceil(most).max(1) as usize).collect();
@@ -66,7 +66,7 @@ impl<'a> Survey<'a> {
         chosen.extend(seams.flat_map(|k| [k.saturating_sub(1), k]).filter(|&k| k < ticks));
         chosen.sort_unstable();
         chosen.dedup();
-        let due = |k| sensor.phase + sensor.clock().tick(k);
+        let due = |k| sensor.tick(k);
         let looks = chosen.into_iter().map(|k| {
             let last = k.checked_sub(1).map(due);
             Look { t: due(k), last, truth: plan.trajectory.at(due(k)) }

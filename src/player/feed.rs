@@ -38,6 +38,13 @@ impl Feed {
         Feed { kind: plan.kind, sampling: plan.sampling, sensing, force, arm, last: None, aid }
     }
 
+    /// Goes on as `next`, which is the same sensor set to something else.
+    pub(super) fn set(&mut self, next: Feed) {
+        let before = std::mem::replace(self, next);
+        self.last = before.last;
+        self.aid = before.aid;
+    }
+
     /// Whether a sample depends only on the truth at its tick, so that [`Feed::extend`] is enough.
     pub(super) fn is_plain(&self) -> bool {
         let at_ticks = self.sampling == Sampling::Point && self.sensing.is_at_ticks();

@@ -29,7 +29,7 @@ fn of_sensor(plan: &Plan, sensor: &SensorPlan) -> Vec<String> {
         let phase = sensor.phase;
         return vec![format!("{kind} never samples: its phase is {phase}, but the scene ends at {end}")];
     }
-    let before = |t| sensor.clock().ticks_before(sensor.phase, t);
+    let before = |t| sensor.ticks_before(t);
     let idle = sensor.faults.iter().filter(|fault| before(fault.start) >= before(fault.end.min(end)));
     idle.map(|fault| {
         let why = if fault.start >= end {
@@ -43,7 +43,7 @@ fn of_sensor(plan: &Plan, sensor: &SensorPlan) -> Vec<String> {
 }
 
 fn ticks(plan: &Plan, sensor: &SensorPlan) -> u64 {
-    sensor.clock().ticks_before(sensor.phase, plan.duration)
+    sensor.ticks_before(plan.duration)
 }
 
 #[cfg(test)]

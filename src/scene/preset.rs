@@ -56,6 +56,19 @@ pub(super) fn part(section: &mut Section<'_>, kind: SensorKind) -> Option<&'stat
     Some(part.called(&name, kind))
 }
 
+/// Fills in what a setting of a part leaves open: the counts of its range, and what a filter's name stands for.
+pub(super) fn set_up(section: &mut Section<'_>, kind: SensorKind, file: &File, rate: Rate) {
+    let settings = file.settings(kind);
+    if section.has_quietly("range")
+        && !section.has_quietly("resolution")
+        && let Some(preset) = super::parts::sensor(&file.table, kind)
+        && let Some(resolution) = resolution(section, kind, preset, &settings.scales)
+    {
+        section.add(vec![resolution]);
+    }
+    named_filter(section, settings, Some(rate));
+}
+
 /// A rate that the part has not, or not with this filter, is told and played.
 fn check_rate(
     section: &Section<'_>,
@@ -88,7 +101,8 @@ fn named_filter(section: &mut Section<'_>, settings: &Settings, rate: Option<Rat
     else {
         return Vec::new();
     };
-    if settings.filters.is_empty() || wanted.starts_with(|first: char| first.is_ascii_digit()) {
+    let is_named = !wanted.starts_with(|first: char| first.is_ascii_digit()) && wanted != "none";
+    if settings.filters.is_empty() || !is_named {
         return Vec::new();
     }
     let is_it = |filter: &&Filter| filter.name.eq_ignore_ascii_case(wanted.trim());

@@ -16,7 +16,7 @@ impl Plan {
         let start = self.trajectory.at(SimTime::ZERO).attitude;
         let (gravity, field) = (self.trajectory.gravity(), self.trajectory.field());
         let still = |sensor: &SensorPlan| {
-            let mut still = SensorPlan { faults: Vec::new(), ..sensor.clone() };
+            let mut still = SensorPlan { faults: Vec::new(), settings: Vec::new(), ..sensor.clone() };
             still.values.remove(VIBRATION);
             still
         };

@@ -60,8 +60,9 @@ fn sensor(
         return None;
     }
     let any_rate = rate.unwrap_or(Rate::hz(1));
-    let faults = Vec::new();
-    let mut plan = SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values, faults };
+    let (faults, settings) = (Vec::new(), Vec::new());
+    let mut plan =
+        SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values, faults, settings, epoch: 0 };
     section.settle_bias(&mut plan);
     let errors = sensor::check(&plan, seed);
     for error in &errors {

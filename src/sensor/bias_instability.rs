@@ -102,4 +102,12 @@ impl Term for GaussMarkov {
     fn normals(&self) -> usize {
         self.normals.count()
     }
+
+    fn state(&self) -> Vec<DVec3> {
+        vec![self.bias]
+    }
+
+    fn resume(&mut self, state: &[DVec3]) {
+        state.iter().for_each(|bias| self.bias = *bias);
+    }
 }

@@ -146,7 +146,7 @@ impl Fault {
             size: values.get(SIZE).map_or([range.unwrap_or_default(); 3], |size| size.to_array()),
             share: values.get(SHARE).unwrap_or_default(),
             every: values.get(EVERY).unwrap_or(1),
-            streams: context.streams(&format!("fault/{index}/{}", self.kind.name())),
+            streams: context.fresh_streams(&format!("fault/{index}/{}", self.kind.name())),
             past: VecDeque::new(),
             kept: if self.kind == FaultKind::Delayed { libm::round(late) as usize + 1 } else { 2 },
             k: 0,

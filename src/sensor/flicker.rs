@@ -102,4 +102,12 @@ impl Term for Flicker {
     fn normals(&self) -> usize {
         self.0.iter().map(|process| process.normals.count()).sum()
     }
+
+    fn state(&self) -> Vec<DVec3> {
+        self.0.iter().map(|process| process.bias).collect()
+    }
+
+    fn resume(&mut self, state: &[DVec3]) {
+        self.0.iter_mut().zip(state).for_each(|(process, bias)| process.bias = *bias);
+    }
 }

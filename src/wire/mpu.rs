@@ -209,7 +209,7 @@ fn scale(sensor: Option<&SensorPlan>, count: impl Fn(u8) -> f64) -> (u8, f64) {
 /// The sensor at whose ticks gyro and accel go out together: on request, or by default when their ticks agree.
 fn burst(setup: &Setup<'_>, gyro: Option<&SensorPlan>, accel: Option<&SensorPlan>) -> Option<SensorKind> {
     let (gyro, accel) = (gyro?, accel?);
-    let alike = gyro.clock() == accel.clock() && gyro.phase == accel.phase;
+    let alike = gyro.ticks_with(accel);
     let together = setup.options.layout.map_or(alike, |layout| layout == Layout::Burst);
     let faster = if accel.rate.as_hz() > gyro.rate.as_hz() { SensorKind::Accel } else { SensorKind::Gyro };
     together.then_some(faster)

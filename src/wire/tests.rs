@@ -520,6 +520,8 @@ proptest! {
             part: None,
             values: Default::default(),
             faults: Vec::new(),
+            settings: Vec::new(),
+            epoch: 0,
         });
         let sensors: Vec<_> = SensorKind::ALL.into_iter().zip(ticks).filter_map(sensor).collect();
         let options = Options { layout, ..Options::default() };

@@ -74,7 +74,7 @@ fn row(effect: &Effect) -> Vec<String> {
 
 /// How a scene was looked at that is too long to be looked at tick by tick.
 fn coverage(plan: &Plan) -> String {
-    let ticks = |sensor: &SensorPlan| sensor.clock().ticks_before(sensor.phase, plan.duration);
+    let ticks = |sensor: &SensorPlan| sensor.ticks_before(plan.duration);
     if plan.sensors.iter().all(|sensor| ticks(sensor) <= TICKS) {
         return String::new();
     }
