@@ -38,6 +38,7 @@
 // `eprintln!` panics where standard error is closed or full: `cli::tell` does not.
 #![warn(clippy::print_stderr)]
 
+pub mod bus;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod clock;

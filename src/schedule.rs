@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_sensor_with_other_ticks_leaves_its_group_and_joins_those_that_begin_with_it() {
         let mut schedule = Schedule::new([at(1000), at(1000), at(500)], SimTime(6_000_000));
-        let mut take = |schedule: &mut Schedule, until| {
+        let take = |schedule: &mut Schedule, until| {
             let (mut times, mut masks) = (Vec::new(), Vec::new());
             schedule.fill(100, SimTime(until), &mut times, &mut masks);
             times.into_iter().map(|t| t.0).zip(masks).collect::<Vec<_>>()

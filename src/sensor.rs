@@ -104,6 +104,8 @@ pub struct SensorPlan {
     pub mount: Option<Mount>,
     /// The part it imitates, by the name of its data file.
     pub part: Option<&'static str>,
+    /// Where its chip answers on a bus, 7 bits; `None` is the chip's usual address.
+    pub address: Option<u8>,
     /// The values of its error terms' keys.
     pub values: Values,
     /// What it does wrong for a while, in the order written.

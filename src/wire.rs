@@ -31,6 +31,7 @@
 
 mod beat;
 mod betaflight;
+mod bus;
 mod claim;
 pub mod dialogue;
 mod fault;
@@ -170,6 +171,10 @@ pub struct Options {
     pub claim: Claim,
     /// For `sbg`: the unit of the field; `None` is what the controller takes it for.
     pub mag: Option<MagUnit>,
+    /// Nothing is sent: what the other side tells is heard.
+    pub is_mute: bool,
+    /// For `bus`: the chip of sensors without a part.
+    pub chip: Option<&'static str>,
 }
 
 impl Options {

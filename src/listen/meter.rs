@@ -113,7 +113,7 @@ impl Meter {
             let counts = samples.counts();
             counts.packets >= ENOUGH && counts.packets > counts.damaged
         };
-        Protocol::ALL.into_iter().find(makes_packets)
+        Protocol::STREAMS.into_iter().find(makes_packets)
     }
 
     /// Each sensor's report, in the order gyro, accel, mag.

@@ -4,7 +4,7 @@ use super::section::Section;
 use super::suggest;
 use super::target::{TARGETS, Target};
 use crate::link::{Address, Endpoint};
-use crate::sensor::SensorPlan;
+use crate::sensor::{SensorKind, SensorPlan, parts};
 use crate::wire::{
     self, AtEnd, Claim, Controller, Extra, Extras, Layout, MagUnit, Protocol, Release, Thin, Version,
 };
@@ -200,7 +200,8 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     if let Some(Controller::Betaflight(release)) = &mut controller {
         *release = betaflight(section);
     }
-    let wire = wire::Options { layout, version, extras, controller, at_end, thin, claim, mag };
+    let (is_mute, chip) = (section.flag("send") == Some(false), chip(section));
+    let wire = wire::Options { layout, version, extras, controller, at_end, thin, claim, mag, is_mute, chip };
     for key in Protocol::own_keys().filter(|key| section.has(key)) {
         let owners: Vec<_> = Protocol::owners(key).map(|it| format!("`{}`", it.name())).collect();
         if !Protocol::owners(key).any(|it| it == to.protocol) {
@@ -229,6 +230,23 @@ fn destination(section: &Section<'_>) -> Option<Destination> {
     }
     let to = section.text("to", None)?;
     to.parse().map_err(|error: String| section.mistake("to", error)).ok()
+}
+
+/// The part whose chip stands for sensors without one.
+fn chip(section: &Section<'_>) -> Option<&'static str> {
+    section.entry("chip")?;
+    let name = section.text("chip", None)?;
+    let found =
+        SensorKind::TRIADS.into_iter().find_map(|kind| Some(parts::find(&name, kind)?.called(&name, kind)));
+    if found.is_none() {
+        let names: Vec<_> = SensorKind::TRIADS.into_iter().flat_map(parts::names).collect();
+        let near = suggest::did_you_mean(&name, names.iter().copied());
+        section.mistake(
+            "chip",
+            format!("`{name}` is not a known part; `ratetable list parts` shows them{near}"),
+        );
+    }
+    found
 }
 
 /// `version` and `messages` of `mavlink`.

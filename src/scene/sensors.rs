@@ -53,6 +53,7 @@ fn sensor(
     let average = kind.is_triad() && section.word("sampling", &["point", "average"], "point") == "average";
     let sampling = if average { Sampling::Average } else { Sampling::Point };
     let mount = if kind.is_triad() { mount(section) } else { None };
+    let address = if kind.is_triad() { address(section) } else { None };
     let keys = sensor::keys(kind);
     let values = section.values(&keys, true);
     // What a key or part that could not be read would have said is not missed a second time.
@@ -61,14 +62,36 @@ fn sensor(
     }
     let any_rate = rate.unwrap_or(Rate::hz(1));
     let (faults, settings) = (Vec::new(), Vec::new());
-    let mut plan =
-        SensorPlan { kind, rate: any_rate, phase, sampling, mount, part, values, faults, settings, epoch: 0 };
+    let mut plan = SensorPlan {
+        kind,
+        rate: any_rate,
+        phase,
+        sampling,
+        mount,
+        part,
+        address,
+        values,
+        faults,
+        settings,
+        epoch: 0,
+    };
     section.settle_bias(&mut plan);
     let errors = sensor::check(&plan, seed);
     for error in &errors {
         section.mistake(error.key, &error.message);
     }
     (rate.is_some() && errors.is_empty()).then_some(plan)
+}
+
+/// Where the sensor's chip answers on a bus.
+fn address(section: &Section<'_>) -> Option<u8> {
+    section.entry("address")?;
+    let address = section.whole("address", 0);
+    let usable = u8::try_from(address).ok().filter(|address| (0x08..=0x77).contains(address));
+    if usable.is_none() {
+        section.mistake("address", format!("is {address:#x}; an I2C address has 7 bits, from 0x08 to 0x77"));
+    }
+    usable
 }
 
 /// A right-angle mount by name, or a quaternion from body (as the scene writes it) to chip axes.

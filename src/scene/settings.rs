@@ -1,13 +1,12 @@
 //! `[[setting]]`: another rate, range or filter of a sensor from a time on, as a driver sets a chip.
 
-use super::document::{Node, Table, Value};
+use super::document::{Table, Value};
 use super::parts::{self, File};
 use super::preset;
 use super::reader::Reader;
 use super::section::Section;
-use super::{Location, Plan, output_rate};
-use crate::geometry::Axes;
-use crate::keys::{Key, Values};
+use super::{Plan, output_rate};
+use crate::keys::Key;
 use crate::quantity::{self, Sign};
 use crate::sensor::{self, FILTER, SensorKind, SensorPlan, Setting};
 use crate::time::{Rate, SimTime};
@@ -46,18 +45,19 @@ fn read(section: &mut Section<'_>, sensors: &[SensorPlan], seed: u64) -> Option<
     {
         preset::set_up(section, plan.kind, &file, rate?.unwrap_or(plan.rate));
     }
-    let keys: Vec<Key> = sensor::keys(plan.kind).into_iter().filter(|key| KEYS.contains(&key.name)).collect();
+    let unfiltered = is_none(section);
+    let may_set = |key: &Key| KEYS.contains(&key.name) && !(unfiltered && key.name == FILTER.name());
+    let keys: Vec<Key> = sensor::keys(plan.kind).into_iter().filter(may_set).collect();
     let mut values = before.map_or(&plan.values, |before| &before.values).clone();
-    if is_none(section) {
+    if unfiltered {
         section.text("filter", None);
         values.remove(FILTER);
-    } else {
-        let given = section.values(&keys, false);
-        if section.unread(&keys, &given) {
-            return None;
-        }
-        values.take_over(&given);
     }
+    let given = section.values(&keys, false);
+    if section.unread(&keys, &given) {
+        return None;
+    }
+    values.take_over(&given);
     let (start, rate) = (start?, rate?);
     if before.is_some_and(|before| start < before.start) {
         section.mistake(
@@ -115,36 +115,43 @@ pub struct Asked<'a> {
 }
 
 impl Plan {
-    /// Sets a sensor as a chip of this part is asked to be set from `start` on, and writes it into the scene as resolved.
+    /// A sensor as a chip of this part is asked to be set from `start` on, and the setting as a scene writes it.
     ///
     /// # Errors
     /// What the part's data or the scene does not know.
-    pub fn set(&mut self, kind: SensorKind, start: SimTime, asked: &Asked<'_>) -> Result<Setting, String> {
+    pub fn asked(
+        &self,
+        kind: SensorKind,
+        start: SimTime,
+        asked: &Asked<'_>,
+    ) -> Result<(Setting, toml::Table), String> {
         let table = written(kind, start, asked)?;
-        let place = Location::whole(asked.part);
         let text = toml::to_string(&table).map_err(|error| error.to_string())?;
         let reader = Reader::new("");
-        reader.axes.set(Axes::default());
         let parsed = Table::parse(&text, asked.part).map_err(|mistake| mistake.to_string())?;
-        let mut section = Section::new(&reader, "setting.0", Table { place, ..parsed });
+        let mut section = Section::new(&reader, "setting.0", parsed);
         let read = read(&mut section, &self.sensors, self.seed);
         let resolved = section.finish();
-        reader
-            .finish()
-            .map_err(|mistakes| mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
-        let (i, setting) = read.ok_or("the setting could not be read")?;
-        self.sensors[i].settings.push(setting.clone());
-        self.write_setting(resolved);
-        Ok(setting)
+        let mistakes = reader.finish().err().unwrap_or_default();
+        match (read, &mistakes[..]) {
+            (Some((_, setting)), []) => Ok((setting, resolved)),
+            (_, mistakes) => Err(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
+        }
     }
 
-    fn write_setting(&mut self, table: toml::Table) {
-        let Ok(mut scene) = self.resolved.parse::<toml::Table>() else { return };
-        let settings = scene.entry("setting").or_insert_with(|| toml::Value::Array(Vec::new()));
-        if let Some(settings) = settings.as_array_mut() {
-            settings.push(table.into());
+    /// The same plan with these settings, as [`Plan::asked`] gave them, of sensors that had none.
+    pub fn set(&mut self, settings: impl IntoIterator<Item = (SensorKind, Setting, toml::Table)>) {
+        let mut written = Vec::new();
+        for (kind, setting, table) in settings {
+            for sensor in self.sensors.iter_mut().filter(|sensor| sensor.kind == kind) {
+                sensor.settings.push(setting.clone());
+            }
+            written.push(toml::Value::Table(table));
         }
-        self.resolved = scene.to_string();
+        if let Ok(mut scene) = self.resolved.parse::<toml::Table>() {
+            scene.insert("setting".into(), toml::Value::Array(written));
+            self.resolved = scene.to_string();
+        }
     }
 }
 

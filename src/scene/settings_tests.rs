@@ -54,8 +54,13 @@ fn what_a_chip_is_asked_is_written_as_a_scene_would_say_it() {
     let mut live = plan("").unwrap();
     let asked = Asked { part: "MPU-9250", rate: Rate::new(1000, 5), range: 1, filter: Some("DLPF 3") };
     let start = SimTime(1_234_567_890);
-    live.set(SensorKind::Gyro, start, &asked).unwrap();
-    live.set(SensorKind::Accel, start, &Asked { rate: None, ..asked }).unwrap();
+    let settings = [(SensorKind::Gyro, asked), (SensorKind::Accel, Asked { rate: None, ..asked })].map(
+        |(kind, asked)| {
+            let (setting, table) = live.asked(kind, start, &asked).unwrap();
+            (kind, setting, table)
+        },
+    );
+    live.set(settings);
     let again = Plan::parse(&live.resolved, "resolved", "test", &[]).unwrap();
     for (live, again) in live.sensors.iter().zip(&again.sensors) {
         let [a, b] = [live, again].map(|sensor| &sensor.settings[0]);
@@ -66,5 +71,5 @@ fn what_a_chip_is_asked_is_written_as_a_scene_would_say_it() {
         assert_eq!((cut_off(a), sensor::delay(&a.values)), (cut_off(b), sensor::delay(&b.values)));
     }
     assert_eq!(live.sensors[0].settings[0].start, start);
-    assert!(live.set(SensorKind::Mag, start, &asked).is_err(), "the scene has none");
+    assert!(live.asked(SensorKind::Mag, start, &asked).is_err(), "the scene has none");
 }

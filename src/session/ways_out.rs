@@ -79,7 +79,7 @@ impl<L: Fn(&[SensorPlan], Protocol, wire::Options) -> (f64, f64)> WaysOut<'_, L>
         let carries_all = |protocol: &Protocol| {
             wire::warnings(*protocol, &wire::Options::default(), &self.plan.sensors).is_empty()
         };
-        for protocol in Protocol::ALL.into_iter().filter(|it| *it != here && carries_all(it)) {
+        for protocol in Protocol::STREAMS.into_iter().filter(|it| *it != here && carries_all(it)) {
             others.push((protocol.name().into(), self.bytes(protocol, wire::Options::default())));
         }
         // What the output already sends is no alternative.

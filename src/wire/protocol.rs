@@ -3,8 +3,8 @@
 use super::dialogue::{Dialogue, Peer};
 use super::row::Row;
 use super::{
-    Controller, Encoder, Now, Options, Packet, Setup, betaflight, ilabs, mavlink, mip, mpu, msp, sbg, text,
-    vectornav,
+    Controller, Encoder, Now, Options, Packet, Setup, betaflight, bus, ilabs, mavlink, mip, mpu, msp, sbg,
+    text, vectornav,
 };
 use crate::motion::Truth;
 use crate::sensor::{ByKind, Reading, SensorKind, SensorPlan};
@@ -34,10 +34,12 @@ pub enum Protocol {
     Csv,
     /// A JSON object for each reading.
     Jsonl,
+    /// No packets: chips whose registers a driver reads.
+    Bus,
 }
 
 /// Every protocol's row, in the order of the variants.
-static ROWS: [&Row; 10] = [
+static ROWS: [&Row; 11] = [
     &mpu::ROW,
     &mavlink::ROW,
     &msp::ROW,
@@ -48,11 +50,12 @@ static ROWS: [&Row; 10] = [
     &betaflight::ROW,
     &text::CSV,
     &text::JSONL,
+    &bus::ROW,
 ];
 
 impl Protocol {
     /// Every protocol.
-    pub const ALL: [Protocol; 10] = [
+    pub const ALL: [Protocol; 11] = [
         Protocol::Mpu,
         Protocol::Mavlink,
         Protocol::Msp,
@@ -63,7 +66,14 @@ impl Protocol {
         Protocol::Betaflight,
         Protocol::Csv,
         Protocol::Jsonl,
+        Protocol::Bus,
     ];
+
+    /// Those that send packets.
+    pub const STREAMS: [Protocol; 10] = {
+        let [streams @ .., _] = Protocol::ALL;
+        streams
+    };
 
     /// Its row.
     pub(super) fn row(self) -> &'static Row {
@@ -114,6 +124,9 @@ impl Protocol {
 
 /// The encoder of a protocol. Readings that it does not carry do not reach it.
 pub fn encoder(protocol: Protocol, setup: &Setup<'_>) -> Box<dyn Encoder> {
+    if setup.options.is_mute {
+        return Box::new(bus::Silent);
+    }
     let encoder = (protocol.row().encoder)(setup);
     match setup.sensors.iter().all(|sensor| protocol.carries(sensor.kind)) {
         true => encoder,
@@ -163,6 +176,9 @@ pub fn check(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> R
 /// What a protocol cannot carry of these sensors, for `check` and the report: it does not send a kind without a
 /// field, and a sensor faster than the packets that carry it loses samples to newer ones.
 pub fn warnings(protocol: Protocol, options: &Options, sensors: &[SensorPlan]) -> Vec<String> {
+    if options.is_mute {
+        return Vec::new();
+    }
     let (carried, left): (Vec<_>, Vec<_>) = sensors.iter().partition(|sensor| protocol.carries(sensor.kind));
     let unsent = left.into_iter().map(|sensor| {
         format!("{} has no place for {}: its readings are not sent", protocol.name(), sensor.kind)

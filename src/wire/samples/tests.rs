@@ -73,7 +73,7 @@ fn tolerance(protocol: Protocol, kind: SensorKind, reading: f64) -> f64 {
         Protocol::Mavlink | Protocol::Vectornav | Protocol::Mip | Protocol::Sbg => {
             2.0 * reading.abs() * f64::from(f32::EPSILON)
         }
-        Protocol::Csv | Protocol::Jsonl => 0.0,
+        Protocol::Csv | Protocol::Jsonl | Protocol::Bus => 0.0,
     }
 }
 
@@ -90,7 +90,7 @@ fn difference(protocol: Protocol, sent: &[(SimTime, Reading)], samples: &[Sample
                 Protocol::Mpu | Protocol::Mavlink | Protocol::Sbg => Some(1000),
                 Protocol::Vectornav | Protocol::Csv | Protocol::Jsonl => Some(1),
                 Protocol::Ilabs => Some(1_000_000),
-                Protocol::Msp | Protocol::Mip | Protocol::Betaflight => None,
+                Protocol::Msp | Protocol::Mip | Protocol::Betaflight | Protocol::Bus => None,
             };
             if sample.t != unit.map(|unit| SimTime(t.0 / unit * unit)) {
                 return Some(format!("{kind} at {:?}, sent for {t}", sample.t));
@@ -116,7 +116,7 @@ fn every_sample_comes_back_with_its_time_and_value() {
     let scenes = [NOISY, MIXED, TOGETHER].map(String::from);
     let turned = [NOISY, MIXED, TOGETHER].map(|scene| format!("axes = \"enu-flu\"\n{scene}"));
     for plan in scenes.iter().chain(&turned).map(|text| plan(text)) {
-        for protocol in Protocol::ALL {
+        for protocol in Protocol::STREAMS {
             let (packets, readings) = play(&plan, protocol, None);
             // In these a sensor's sample leaves at the next tick of the gyro: compare where both tick.
             if matches!(protocol, Protocol::Mavlink | Protocol::Sbg)
@@ -148,7 +148,7 @@ fn every_sample_comes_back_with_its_time_and_value() {
 #[test]
 fn a_swapped_axis_is_noticed() {
     let plan = plan(TOGETHER);
-    for protocol in Protocol::ALL {
+    for protocol in Protocol::STREAMS {
         let (packets, readings) = play(&plan, protocol, None);
         let (samples, _) = read(Samples::new(protocol), &bytes(&packets), 4096);
         assert_eq!(difference(protocol, &readings, &samples), None);
@@ -575,7 +575,7 @@ fn names_of_foreign_packets_do_not_fill_the_memory() {
 proptest! {
     #[test]
     fn any_bytes_do_not_panic_and_read_the_same_however_cut(
-        protocol in prop::sample::select(Protocol::ALL.to_vec()),
+        protocol in prop::sample::select(Protocol::STREAMS.to_vec()),
         bytes in prop::collection::vec(prop_oneof![Just(0u8), Just(b'\n'), Just(0xfd), Just(0xfe), Just(b','), any::<u8>()], 0..2000),
         piece in 1..300usize,
     ) {

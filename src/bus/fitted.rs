@@ -1,0 +1,224 @@
+//! Which chips a scene's sensors are, at which addresses, and what their counts mean.
+
+use crate::geometry::{Body, Vector};
+use crate::sensor::{Mount, SensorKind, SensorPlan, lsb};
+use ratetable_protocols::chip::ak::{self, Ak};
+use ratetable_protocols::chip::mpu::Mpu;
+use ratetable_protocols::chip::{Channel, Chip};
+use ratetable_protocols::mpu::registers;
+
+/// A chip that can stand on a bus.
+#[derive(Debug)]
+pub struct ChipKind {
+    /// The part whose data it has, as `part = "…"` names it.
+    pub part: &'static str,
+    /// What it senses.
+    pub channels: &'static [Channel],
+    /// Where it may answer, 7 bits; the first is the default.
+    pub addresses: &'static [u8],
+    /// From the axes of its gyro and accelerometer to those of its magnetometer.
+    turn: fn([f64; 3]) -> [f64; 3],
+    make: fn(u8) -> Box<dyn Chip + Send>,
+}
+
+/// No adjustment of an AK8963's sensitivity.
+const ASA: [u8; 3] = [128; 3];
+
+const SIX: &[Channel] = &[Channel::Gyro, Channel::Accel];
+const NINE: &[Channel] = &Channel::ALL;
+const INVENSENSE: &[u8] = &[0x68, 0x69];
+
+/// As it is.
+fn same(v: [f64; 3]) -> [f64; 3] {
+    v
+}
+
+/// Every chip.
+pub static CHIPS: &[ChipKind] = &[
+    ChipKind {
+        part: "MPU-6050",
+        channels: SIX,
+        addresses: INVENSENSE,
+        turn: same,
+        make: |at| Box::new(Mpu::mpu6050(at)),
+    },
+    ChipKind {
+        part: "MPU-9250",
+        channels: NINE,
+        addresses: INVENSENSE,
+        turn: registers::swap_mag_axes,
+        make: |at| Box::new(Mpu::mpu9250(at, ASA)),
+    },
+    ChipKind {
+        part: "AK8963",
+        channels: &[Channel::Mag],
+        addresses: &[ak::ADDRESS],
+        turn: same,
+        make: |_| Box::new(Ak::ak8963(ASA)),
+    },
+    ChipKind {
+        part: "AK09916",
+        channels: &[Channel::Mag],
+        addresses: &[ak::ADDRESS],
+        turn: same,
+        make: |_| Box::new(Ak::ak09916()),
+    },
+];
+
+/// A chip with the sensors of a scene that it stands for.
+pub struct Fitted {
+    /// What it is.
+    pub kind: &'static ChipKind,
+    /// Where it answers.
+    pub address: u8,
+    /// Which of the scene's sensors each of its channels measures, in the order of [`Channel::ALL`].
+    pub sensors: [Option<usize>; 3],
+    pub(super) chip: Box<dyn Chip + Send>,
+}
+
+impl std::fmt::Display for Fitted {
+    /// `MPU-9250 at 0x68 (gyro, accel, mag)`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let sensed = self.sensors.iter().zip(SensorKind::TRIADS).filter(|(sensor, _)| sensor.is_some());
+        let names: Vec<_> = sensed.map(|(_, kind)| kind.name()).collect();
+        write!(f, "{} at {:#04x} ({})", self.kind.part, self.address, names.join(", "))
+    }
+}
+
+impl std::fmt::Debug for Fitted {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Fitted").field(&self.to_string()).finish()
+    }
+}
+
+/// The channel of a kind of sensor.
+pub(super) fn channel(kind: SensorKind) -> Option<Channel> {
+    Channel::ALL.into_iter().find(|channel| SensorKind::TRIADS[*channel as usize] == kind)
+}
+
+/// The chips that these sensors are by their parts, or by `chip` where they have none.
+///
+/// # Errors
+/// A sensor without a part, a part that is no chip of this version, an address that a chip has not or that two share.
+pub fn fit(sensors: &[SensorPlan], chip: Option<&str>) -> Result<Vec<Fitted>, String> {
+    let mut chips: Vec<Fitted> = Vec::new();
+    let mut inside = Vec::new();
+    for (i, sensor) in sensors.iter().enumerate() {
+        let Some(channel) = channel(sensor.kind) else { continue };
+        let kind = kind_of(sensor, channel, chip)?;
+        if is_inside(kind, channel) {
+            inside.push((i, sensor, kind));
+        } else {
+            place(&mut chips, kind, channel, (i, sensor))?;
+        }
+    }
+    // A magnetometer that is part of a chip on the board is that one.
+    for (i, sensor, kind) in inside {
+        let host = chips
+            .iter_mut()
+            .find(|it| it.kind.channels.contains(&Channel::Mag) && holds(it.kind.part, kind.part));
+        match host {
+            Some(host) if host.sensors[Channel::Mag as usize].is_none() => {
+                host.sensors[Channel::Mag as usize] = Some(i);
+            }
+            _ => place(&mut chips, kind, Channel::Mag, (i, sensor))?,
+        }
+    }
+    if chips.is_empty() {
+        return Err("a bus needs a gyro, an accel or a mag in the scene".into());
+    }
+    for (i, a) in chips.iter().enumerate() {
+        if let Some(b) = chips[..i].iter().find(|b| b.address == a.address) {
+            return Err(format!(
+                "{b} and {a} answer at the same address: give one of them another `address`"
+            ));
+        }
+    }
+    Ok(chips)
+}
+
+/// What a sensor is.
+fn kind_of(sensor: &SensorPlan, channel: Channel, chip: Option<&str>) -> Result<&'static ChipKind, String> {
+    let kind = sensor.kind;
+    let Some(part) = sensor.part.or(chip) else {
+        return Err(format!(
+            "[{kind}] has no part, so there is no chip for it on a bus: give it one, such as part = \"MPU-9250\", or give all of them `chip = \"MPU-9250\"` in [[output]], --set output.0.chip=… for registers without that part's errors"
+        ));
+    };
+    let has = |it: &&ChipKind| it.channels.contains(&channel);
+    CHIPS.iter().filter(has).find(|it| it.part.eq_ignore_ascii_case(part)).ok_or_else(|| {
+        let mut names: Vec<_> = CHIPS.iter().filter(has).map(|it| it.part).collect();
+        names.dedup();
+        format!(
+            "[{kind}]: this version has no registers of the {part}; a bus has those of {}",
+            names.join(", ")
+        )
+    })
+}
+
+/// Whether it is a magnetometer that others have inside.
+fn is_inside(kind: &ChipKind, channel: Channel) -> bool {
+    channel == Channel::Mag && kind.channels.len() == 1
+}
+
+/// Whether a part has this magnetometer inside.
+fn holds(part: &str, mag: &str) -> bool {
+    crate::sensor::parts::find(mag, SensorKind::Mag).is_some_and(|found| found.names.contains(&part))
+}
+
+fn place(
+    chips: &mut Vec<Fitted>,
+    kind: &'static ChipKind,
+    channel: Channel,
+    (i, sensor): (usize, &SensorPlan),
+) -> Result<(), String> {
+    let address = sensor.address;
+    if let Some(address) = address.filter(|address| !kind.addresses.contains(address)) {
+        let places: Vec<_> = kind.addresses.iter().map(|address| format!("{address:#04x}")).collect();
+        return Err(format!(
+            "[{}]: the {} answers at {}, not at {address:#04x}",
+            sensor.kind,
+            kind.part,
+            places.join(" or ")
+        ));
+    }
+    let same = chips.iter_mut().find(|it| {
+        std::ptr::eq(it.kind, kind)
+            && it.sensors[channel as usize].is_none()
+            && address.is_none_or(|address| address == it.address)
+    });
+    match same {
+        Some(chip) => chip.sensors[channel as usize] = Some(i),
+        None => {
+            let address = address.unwrap_or(kind.addresses[0]);
+            let mut sensors = [None; 3];
+            sensors[channel as usize] = Some(i);
+            chips.push(Fitted { kind, address, sensors, chip: (kind.make)(address) });
+        }
+    }
+    Ok(())
+}
+
+/// What a reading of a sensor is in counts on a chip's channel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale {
+    mount: Mount,
+    /// The size of a count, in the sensor's unit.
+    count: f64,
+    turn: fn([f64; 3]) -> [f64; 3],
+}
+
+impl Scale {
+    /// Of a sensor as it is set now.
+    pub fn new(sensor: &SensorPlan, kind: &ChipKind) -> Scale {
+        let turn = if sensor.kind == SensorKind::Mag { kind.turn } else { same };
+        let count = lsb(&sensor.values, sensor.kind).unwrap_or(1.0);
+        Scale { mount: sensor.mount.unwrap_or_else(Mount::flu), count, turn }
+    }
+
+    /// The nearest counts, at most what fits.
+    pub fn counts(&self, value: Vector<Body>) -> [i16; 3] {
+        let chip = self.mount.to_chip(value).v.to_array();
+        (self.turn)(chip).map(|x| registers::nearest(x / self.count))
+    }
+}
