@@ -25,6 +25,7 @@
 
 pub mod ak;
 pub mod bmi160;
+pub mod bmi270;
 mod bosch;
 mod fifo;
 mod latest;

@@ -56,6 +56,11 @@ impl<const N: usize> Frames<N> {
         self.skipped
     }
 
+    /// How many bytes it has room for from now on; it has to be empty.
+    pub fn resize(&mut self, size: usize) {
+        self.size = size.min(N);
+    }
+
     /// Whether two more frames at most have room, which is what the chips call full (BST-BMI088-DS001 section 4.9.3.3).
     pub fn is_full(&self) -> bool {
         self.room() < 3 * self.newest
