@@ -24,6 +24,7 @@
 //! ```
 
 pub mod ak;
+pub mod bmi088;
 pub mod bmi160;
 pub mod bmi270;
 mod bosch;

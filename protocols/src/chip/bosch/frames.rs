@@ -76,6 +76,11 @@ impl<const N: usize> Frames<N> {
         self.at = At::Start;
     }
 
+    /// Loses the rest of a frame that was read in part: the channels whose sample it was.
+    pub fn drop_partial(&mut self) -> u8 {
+        if self.read > 0 { self.pop() } else { 0 }
+    }
+
     /// Adds a frame with samples of these channels: how many samples of each are lost by it.
     pub fn push(&mut self, bytes: &[u8], channels: u8, stops: bool) -> [u64; 3] {
         let mut lost = [0; 3];
