@@ -30,6 +30,7 @@ pub mod bmi270;
 mod bosch;
 mod fifo;
 mod latest;
+pub mod lsm6dso;
 mod master;
 pub mod mpu;
 

@@ -31,7 +31,7 @@ fn kth(k: i16) -> Samples {
 fn upload(chip: &mut Bmi270, len: usize, step: usize) {
     write(chip, 0, &[0x59, 0x00], false);
     for at in (0..len).step_by(step) {
-        write(chip, 0, &[0x5b, (at / 2 & 0x0f) as u8, (at / 2 >> 4) as u8], false);
+        write(chip, 0, &[0x5b, ((at / 2) & 0x0f) as u8, (at >> 5) as u8], false);
         write(chip, 0, &[0x5e], false);
         write(chip, 0, &[7; 8192][..step.min(len - at)], true);
     }
@@ -250,7 +250,7 @@ fn the_makers_own_driver_finds_what_it_expects() {
     let mut at = 0u16;
     while at < 8192 {
         let step = if at < 8188 { 46 } else { 2 };
-        bus.write(0x68, &[0x5b, (at / 2 & 0x0f) as u8, (at / 2 >> 4) as u8], false);
+        bus.write(0x68, &[0x5b, ((at / 2) & 0x0f) as u8, (at >> 5) as u8], false);
         bus.write(0x68, &[0x5e; 47][..=step], false);
         at += step as u16;
     }
