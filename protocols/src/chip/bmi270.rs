@@ -112,6 +112,8 @@ impl Bmi270 {
             sensors: Sensors::new(FIFO_SIZE),
             celsius: 25.0,
         };
+        // assumed: -32768 on every axis, which is what its maker's driver takes for the end.
+        chip.sensors.frames.empty = [0x00, 0x80];
         chip.reset();
         chip
     }

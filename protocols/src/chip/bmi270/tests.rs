@@ -329,7 +329,7 @@ proptest! {
             prop_assert_eq!(burst(&mut chip, 0x24), (model.len() as u16 * 6).to_le_bytes());
             for _ in 0..frames {
                 let [low, high, ..] = burst::<6>(&mut chip, 0x26);
-                prop_assert_eq!(i16::from_le_bytes([low, high]), model.pop_front().unwrap_or(0x0080));
+                prop_assert_eq!(i16::from_le_bytes([low, high]), model.pop_front().unwrap_or(i16::MIN));
             }
         }
     }

@@ -13,7 +13,7 @@ const CHANNELS: u8 = 0x07;
 
 const SKIP: u8 = 0x40;
 const SENSOR_TIME: u8 = 0x44;
-/// What an empty FIFO reads, in turns.
+/// What an empty FIFO reads, in turns: 0x80 is no header.
 const EMPTY: [u8; 2] = [0x80, 0x00];
 
 /// Where a burst is.
@@ -41,11 +41,21 @@ pub(in crate::chip) struct Frames<const N: usize> {
     skipped: u8,
     /// Bytes of the newest frame.
     newest: usize,
+    /// What an empty one reads without headers, in turns.
+    pub empty: [u8; 2],
 }
 
 impl<const N: usize> Frames<N> {
     pub fn new(size: usize) -> Self {
-        Self { fifo: Fifo::new(), size: size.min(N), read: 0, at: At::Start, skipped: 0, newest: 1 }
+        Self {
+            fifo: Fifo::new(),
+            size: size.min(N),
+            read: 0,
+            at: At::Start,
+            skipped: 0,
+            newest: 1,
+            empty: EMPTY,
+        }
     }
 
     pub fn len(&self) -> usize {
@@ -131,9 +141,13 @@ impl<const N: usize> Frames<N> {
             }
             At::Past(second) => {
                 self.at = At::Past(!second);
-                (EMPTY[usize::from(second)], 0)
+                (self.past(headers)[usize::from(second)], 0)
             }
         }
+    }
+
+    const fn past(&self, headers: bool) -> [u8; 2] {
+        if headers { EMPTY } else { self.empty }
     }
 
     /// A byte of a frame. Where the burst has emptied the FIFO the sensor's time follows.
@@ -142,7 +156,7 @@ impl<const N: usize> Frames<N> {
             let has_read = matches!(self.at, At::Frames);
             let timed = headers && has_read && time.is_some();
             self.at = if timed { At::Time(0) } else { At::Past(true) };
-            return (if timed { SENSOR_TIME } else { EMPTY[0] }, 0);
+            return (if timed { SENSOR_TIME } else { self.past(headers)[0] }, 0);
         };
         self.read += 1;
         if mark.ends & FRAME == 0 {
