@@ -1,6 +1,7 @@
 //! BMI160.
 //!
-//! Source: BST-BMI160-DS000, section 2.11 for registers. A power mode changes at once. A command that is not known does
+//! Source: BST-BMI160-DS000, section 2.11 for registers; commands, interrupts, offsets and reset values were checked against
+//! its maker's driver, not the sheet (assumed where the driver says nothing). A power mode changes at once. A command that is not known does
 //! nothing. No magnetometer is attached to the secondary interface. Motion and step detection are registers that can be
 //! written and read back and never fire. Self-test, compensation on the chip and averages change nothing that is measured
 //! ([`Chip::lacks`] tells of them).
@@ -112,7 +113,7 @@ impl Bmi160 {
         self.registers[register as usize & 0x7f]
     }
 
-    /// CMD (section 2.11.38).
+    /// CMD: the codes of register 0x7E.
     fn command(&mut self, command: u8) {
         match command {
             0x03 => self.has_compensated = true,
@@ -186,7 +187,7 @@ impl Bmi160 {
         self.sensors.ready | 0x10 | compensated
     }
 
-    /// ACC_RANGE has four codes (section 2.11.12); another is taken for ±2 g.
+    /// ACC_RANGE has four codes (register 0x41); another is taken for ±2 g.
     fn accel_range(&self) -> u8 {
         match self.of(ACC_RANGE) & 0x0f {
             0x05 => 1,
@@ -217,7 +218,7 @@ impl Bmi160 {
         setting(self.power >> 2 & 3 == 1, rate, range, filter(conf >> 4 & 3))
     }
 
-    /// 3.9 mg, which is 64 counts at ±2 g, a unit (section 2.11.37).
+    /// 3.9 mg, which is 64 counts at ±2 g, a unit (registers 0x71 to 0x77).
     fn with_accel_offset(&self, counts: [i16; 3]) -> [i16; 3] {
         if self.of(OFFSET_CONF) & 0x40 == 0 {
             return counts;
@@ -226,7 +227,7 @@ impl Bmi160 {
         shifted(counts, offsets, 64, self.accel_range())
     }
 
-    /// 0.061 °/s, which is 16 counts at ±125 °/s, a unit (section 2.11.37).
+    /// 0.061 °/s, which is 16 counts at ±125 °/s, a unit (registers 0x71 to 0x77).
     fn with_gyro_offset(&self, counts: [i16; 3]) -> [i16; 3] {
         if self.of(OFFSET_CONF) & 0x80 == 0 {
             return counts;

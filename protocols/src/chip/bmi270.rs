@@ -1,6 +1,7 @@
 //! BMI270.
 //!
-//! Source: BST-BMI270-DS000, chapter 5 for registers. The program that a driver uploads is counted, not run: the chip takes
+//! Source: BST-BMI270-DS000; meanings of registers were checked against its maker's driver, reset values that no driver
+//! names are assumed. The program that a driver uploads is counted, not run: the chip takes
 //! any 8192 bytes, or the 328 of the image that gives its memory to the FIFO, and is ready 20 ms after. Until then it
 //! measures nothing. Its features (steps, motion, axis remapping, gain) are memory that can be written and read back. No
 //! sensor is attached to the auxiliary interface, and power saving does not slow the bus ([`Chip::lacks`] tells of what
@@ -75,7 +76,7 @@ const DRDY_MAP: u8 = 0x04;
 /// EVENT: the chip was reset.
 const POWER_ON: u8 = 0x01;
 
-/// What registers hold after a reset, where not 0 (chapter 5, register map; assumed: INIT_CTRL).
+/// What registers hold after a reset, where not 0 (register map; assumed: INIT_CTRL).
 const RESET: [(u8, &[u8]); 6] = [
     (ACC_CONF, &[0xa8, 0x02, 0xa9, 0x00, 0x46, 0x88, 0x00, 0x02, 0x02, 0x10]),
     (0x4b, &[0x20, 0x83, 0x42, 0x4c, 0x02]),
@@ -167,7 +168,7 @@ impl Bmi270 {
     }
 
     /// A change of what FIFO samples mean goes there as a frame of its own: a bit for each register and the time, four bytes
-    /// (section 4.7; assumed: the order of bits).
+    /// (its length is that which its maker's driver skips; assumed: the order of bits).
     fn configure(&mut self, t_ns: u64, register: u8, value: u8) {
         let is_new = self.of(register) != value;
         self.registers[usize::from(register & 0x7f)] = value;

@@ -1,6 +1,7 @@
 //! LSM6DSO.
 //!
-//! Sources: DS12140 (registers, chapters 8 and 9) and AN5192. The pages of embedded functions and of the sensor hub are
+//! Sources: DS12140 and AN5192; meanings and reset values of registers were checked against its maker's driver and those of
+//! its sister LSM6DSO32. The pages of embedded functions and of the sensor hub are
 //! memory that can be written and read back. Power modes do not change filters, the first samples after a change of rate are
 //! as good as the rest, and a read never waits for a block to be whole. Self-tests, high-pass filters, compression and the
 //! FIFO modes that wait for an event change nothing ([`Chip::lacks`] tells of them).
@@ -104,7 +105,7 @@ impl Lsm6dso {
         chip
     }
 
-    /// Every register as chapter 8 gives it: both sensors off, addresses count up.
+    /// Every register as the sheet's map gives it: both sensors off, addresses count up.
     fn reset(&mut self) {
         self.registers = [0; 128];
         self.pages = [[0; 128]; 2];
@@ -142,7 +143,7 @@ impl Lsm6dso {
         (if is_on { units as u32 } else { 0 }).to_le_bytes()
     }
 
-    /// 256 a °C, 0 is 25 °C (table 4).
+    /// 256 a °C, 0 is 25 °C (DS12140, temperature sensor characteristics).
     fn thermometer(&self) -> [u8; 2] {
         temperature(self.celsius, 25.0, 256.0).to_le_bytes()
     }
@@ -216,7 +217,7 @@ impl Lsm6dso {
         }
     }
 
-    /// Data is no longer new when one of its high bytes, at odd addresses, is read (AN5192 section 3.5).
+    /// Data is no longer new when one of its high bytes, at odd addresses, is read (AN5192, using the status register).
     fn clear_on_high(&mut self, register: u8, bit: u8) {
         if register & 1 == 1 {
             self.status &= !bit;

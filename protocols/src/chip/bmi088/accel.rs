@@ -25,6 +25,9 @@ const FIFO_CONFIG_0: u8 = 0x48;
 const FIFO_CONFIG_1: u8 = 0x49;
 const INT1_IO_CTRL: u8 = 0x53;
 const INT_MAP_DATA: u8 = 0x58;
+/// Not in the sheet, but in its maker's driver: a program that synchronizes both sensors.
+const INIT_CTRL: u8 = 0x59;
+const FEATURE_CFG: u8 = 0x5e;
 const ACC_SELF_TEST: u8 = 0x6d;
 const ACC_PWR_CONF: u8 = 0x7c;
 const ACC_PWR_CTRL: u8 = 0x7d;
@@ -158,8 +161,13 @@ impl Accel {
     }
 
     pub fn lacks(&self) -> Option<&'static str> {
-        (self.of(ACC_SELF_TEST) != 0)
-            .then_some("self-test of the accelerometer (ACC_SELF_TEST): nothing deflects the readings")
+        if self.of(ACC_SELF_TEST) != 0 {
+            Some("self-test of the accelerometer (ACC_SELF_TEST): nothing deflects the readings")
+        } else if self.of(INIT_CTRL) & 1 != 0 {
+            Some("the program that synchronizes both sensors (INIT_CTRL): it does not start")
+        } else {
+            None
+        }
     }
 }
 
@@ -209,6 +217,9 @@ impl Registers for Accel {
     }
 
     fn after(&self, register: u8) -> u8 {
-        if register == FIFO_DATA { register } else { register.wrapping_add(1) & 0x7f }
+        match register {
+            FIFO_DATA | FEATURE_CFG => register,
+            _ => register.wrapping_add(1) & 0x7f,
+        }
     }
 }

@@ -243,12 +243,15 @@ fn the_gyros_watermark_counts_frames() {
 }
 
 #[test]
-fn the_gyros_self_test_ends_well() {
+fn self_tests_end_well_and_what_is_not_modelled_is_told() {
     let mut chip = awake();
     assert_eq!(burst(&mut chip, GYRO, 0x3c), [0x10]);
     put(&mut chip, GYRO, &[0x3c, 0x01]);
     assert_eq!(burst(&mut chip, GYRO, 0x3c), [0x12]);
     assert_eq!(chip.lacks(), None);
+    put(&mut chip, ACCEL, &[0x5e, 0xb6, 0xb6, 0xb6]);
+    put(&mut chip, ACCEL, &[0x59, 0x01]);
+    assert!(chip.lacks().is_some_and(|lack| lack.contains("synchronizes")));
     put(&mut chip, ACCEL, &[0x6d, 0x0d]);
     assert!(chip.lacks().is_some_and(|lack| lack.contains("ACC_SELF_TEST")));
 }

@@ -1,4 +1,4 @@
-//! The upload of a BMI270's program, without which it measures nothing (BST-BMI270-DS000 section 4.5, device
+//! The upload of a BMI270's program, without which it measures nothing (BST-BMI270-DS000, device
 //! initialization).
 
 /// Bytes of the program's memory.

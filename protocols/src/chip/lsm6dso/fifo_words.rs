@@ -1,4 +1,4 @@
-//! The FIFO of an LSM6DSO: 512 words of a tag and six bytes (DS12140 section 6.5, AN5192 chapter 9).
+//! The FIFO of an LSM6DSO: 512 words of a tag and six bytes (DS12140 section 6.5; AN5192).
 
 use super::{
     COUNTER_BDR_REG1, COUNTER_BDR_REG2, CTRL1_XL, CTRL2_G, FIFO_CTRL1, FIFO_CTRL2, FIFO_CTRL3, FIFO_CTRL4,
@@ -93,7 +93,7 @@ impl Lsm6dso {
         runs && is_batched(&mut self.words.turns[0], log)
     }
 
-    /// BDR_XL: 11 is 1.6 Hz, an eighth of 12.5 Hz.
+    /// BDR_XL: 11 is 1.6 Hz, an eighth of 12.5 Hz (assumed: its maker's driver names it 6.5 Hz).
     pub(super) fn batches_accel(&mut self) -> bool {
         let (batch, odr) = (self.of(FIFO_CTRL3) & 0x0f, self.of(CTRL1_XL) >> 4);
         let log = match (batch, odr) {
@@ -105,7 +105,8 @@ impl Lsm6dso {
         runs && is_batched(&mut self.words.turns[1], log)
     }
 
-    /// One time slot: the words of what is batched at this moment, gyro first (assumed: then temperature and time).
+    /// One time slot: the words of what is batched at this moment (assumed: time, which Linux's driver takes for that of the
+    /// samples behind it, then gyro, accelerometer and temperature).
     pub(super) fn batch(&mut self, t_ns: u64, [gyro, accel]: [bool; 2]) {
         if !self.fifo_runs() {
             return;
@@ -113,6 +114,10 @@ impl Lsm6dso {
         let before = self.words.slots;
         self.words.slots = before.wrapping_add(1);
         self.words.newest = 0;
+        if gyro || accel {
+            self.batch_time(t_ns);
+            self.count_batch([gyro, accel]);
+        }
         if gyro {
             self.push_sample(TAG_GYRO, self.gyro.counts, Channel::Gyro);
         }
@@ -120,10 +125,6 @@ impl Lsm6dso {
             self.push_sample(TAG_ACCEL, self.accel.counts, Channel::Accel);
         }
         self.batch_temperature(t_ns);
-        if gyro || accel {
-            self.batch_time(t_ns);
-            self.count_batch([gyro, accel]);
-        }
         if self.words.newest == 0 {
             self.words.slots = before;
         }

@@ -3,11 +3,11 @@
 use super::{CTRL1_XL, CTRL2_G, CTRL4_C, CTRL6_C, CTRL7_G, CTRL8_XL, Lsm6dso, X_OFS_USR};
 use crate::chip::Setting;
 
-/// Rates by ODR_XL and ODR_G, nominal (DS12140 tables 49 and 52).
+/// Rates by ODR_XL and ODR_G, nominal (DS12140 section 4.1, table 2).
 const RATES: [(u32, u32); 10] =
     [(25, 2), (26, 1), (52, 1), (104, 1), (208, 1), (416, 1), (833, 1), (1666, 1), (3332, 1), (6664, 1)];
 
-/// The accelerometer's second filter by HPCF_XL (table 65).
+/// The accelerometer's second filter by HPCF_XL (DS12140 table 65).
 const LPF2: [&str; 8] = [
     "LPF2 ODR/4",
     "LPF2 ODR/10",
@@ -36,7 +36,7 @@ fn rate(code: u8) -> Option<(u32, u32)> {
 }
 
 impl Lsm6dso {
-    /// Code 11 is 1.6 Hz in low-power mode, else 12.5 Hz (table 49).
+    /// Code 11 is 1.6 Hz in low-power mode, else 12.5 Hz (DS12140, CTRL1_XL).
     pub(super) fn accel_setting(&self) -> Setting {
         let code = self.of(CTRL1_XL) >> 4;
         let is_slow = code == 11 && self.of(CTRL6_C) & 0x10 != 0;
@@ -54,7 +54,7 @@ impl Lsm6dso {
         Setting { rate, range: self.accel_range(), filter }
     }
 
-    /// ±2, ±16, ±4, ±8 g by code; with XL_FS_MODE the second is ±2 g too (table 50).
+    /// ±2, ±16, ±4, ±8 g by code; with XL_FS_MODE the second is ±2 g too (CTRL1_XL, CTRL8_XL).
     fn accel_range(&self) -> u8 {
         match self.of(CTRL1_XL) >> 2 & 3 {
             1 if self.of(CTRL8_XL) & 0x02 != 0 => 0,

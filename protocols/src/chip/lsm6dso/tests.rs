@@ -284,10 +284,10 @@ fn temperature_and_time_are_batched_where_they_are_asked_for() {
             .collect::<Vec<_>>()
     };
     let words = at(&mut chip, 1_000_000);
-    assert_eq!(words, [(2, [1, 0, 1, 0].into()), (3, [0, 1, 0, 0].into()), (4, [40, 0, 0, 0].into())]);
+    assert_eq!(words, [(4, [40, 0, 0, 0].into()), (2, [1, 0, 1, 0].into()), (3, [0, 1, 0, 0].into())]);
     let tags = |words: Vec<(u8, Vec<u8>)>| words.into_iter().map(|word| word.0).collect::<Vec<_>>();
-    assert_eq!(tags(at(&mut chip, 80_999_999)), [2, 4], "12.5 Hz");
-    assert_eq!(tags(at(&mut chip, 81_000_000)), [2, 3, 4]);
+    assert_eq!(tags(at(&mut chip, 80_999_999)), [4, 2], "12.5 Hz");
+    assert_eq!(tags(at(&mut chip, 81_000_000)), [4, 2, 3]);
 }
 
 #[test]
