@@ -53,6 +53,11 @@ impl<const N: usize> Fifo<N> {
         }
     }
 
+    /// The byte behind `index` older ones, and what it marks.
+    pub fn peek(&self, index: usize) -> Option<(u8, Mark)> {
+        (index < self.len).then(|| self.bytes[(self.first + index) % N])
+    }
+
     fn take(&mut self) -> Option<(u8, Mark)> {
         let oldest = *self.bytes.get(self.first).filter(|_| self.len > 0)?;
         self.first = (self.first + 1) % N;
