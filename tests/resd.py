@@ -114,7 +114,7 @@ def main(folder, *asked):
             rows = [(t, [Fraction(x)]) for t, x in zip(times, columns["temperature_degc"])]
             wrong += compare(blocks, rows, per_unit[name])
         report[f"{name}:{channel}"] = {"samples": len(times), "blocks": len(blocks), "wrong": wrong}
-    print(json.dumps(report))
+    print(json.dumps(report, sort_keys=True))
 
 
 if __name__ == "__main__":

@@ -55,6 +55,7 @@ noise_std = "3 Pa"
 temperature = "12.5 degC"
 [gps]
 [airspeed]
+rate = "20 Hz"
 [[fault]]
 sensor = "accel"
 kind = "intermittent"
