@@ -131,7 +131,7 @@ impl ChipAxes {
     fn of(sensor: &SensorPlan) -> ChipAxes {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z];
         let inside = match (sensor.kind, sensor.part) {
-            // PS-MPU-9250A section 9.1 and DS-000189 section 14, orientation of axes.
+            // PS-MPU-9250A section 9.1 and DS-000189, orientation of axes.
             (SensorKind::Mag, Some("MPU-9250")) => [y, x, -z],
             (SensorKind::Mag, Some("ICM-20948")) => [x, -y, -z],
             _ => [x, y, z],
@@ -368,7 +368,7 @@ mod tests {
         };
         assert_eq!(sample([1.4, -1.6, 0.0]), (12, [1, -2, 0]));
         assert_eq!(sample([1e30, -1e30, f64::NAN]), (12, [i32::MAX, i32::MIN, 0]));
-        assert_eq!(Sample::pascals(101_325.0004).bytes[..8], 101_325_000u64.to_le_bytes());
+        assert_eq!(Sample::pascals(101_325.000_4).bytes[..8], 101_325_000u64.to_le_bytes());
         assert_eq!(Sample::pascals(-3.0).bytes[..8], [0; 8]);
         assert_eq!(Sample::celsius(-40.0).bytes[..4], (-40_000i32).to_le_bytes());
     }
