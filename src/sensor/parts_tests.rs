@@ -344,6 +344,8 @@ fn a_named_filter_is_the_one_of_the_rate() {
         ("ICM-42688-P", Gyro, "1 kHz", "BW 1", 230.7, 2, 2.1),
         ("ICM-42688-P", Accel, "500 Hz", "bw 1", 115.3, 2, 4.1),
         ("ICM-42688-P", Gyro, "25 Hz", "BW 15", 52.4, 2, 7.5),
+        ("ICM-42688-P", Gyro, "1 kHz", "BW 1 order 1", 227.2, 1, 1.8),
+        ("ICM-42688-P", Accel, "100 Hz", "BW 7 order 3", 10.1, 2, 35.2),
         ("ICM-42688-P", Gyro, "8 kHz", "fixed", 2096.3, 2, 0.2),
         ("BMI088", Accel, "400 Hz", "OSR2", 75.0, 2, 0.0),
         ("BMI270", Gyro, "200 Hz", "normal", 77.0, 2, 5.97),
