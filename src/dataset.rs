@@ -36,6 +36,7 @@ mod parquet;
 pub mod read;
 mod readme;
 mod reference;
+mod resd;
 mod run;
 mod runs;
 mod table;
@@ -54,9 +55,10 @@ pub use run::Run;
 pub use runs::{Made, RunOptions, Shard, write_runs};
 pub use table::{Column, Table};
 
-use crate::geometry::Attitude;
+use crate::geometry::{Attitude, Axes};
 use crate::player::{self, Player};
 use crate::scene::{Attached, Plan};
+use crate::sensor::Reading;
 use crate::time::SimTime;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -195,6 +197,7 @@ fn write_in_blocks(
         book.row(tables.len() - 1, *t, &table::quaternion(plan.axes, *attitude))?;
     }
     let rows = book.rows.iter().sum();
+    let samples = book.rows[table::TRUTH + 1..][..plan.sensors.len()].to_vec();
     let files = book.close(&folder)?;
 
     let readme = readme::text(plan, &files, quality.as_ref());
@@ -213,6 +216,7 @@ fn write_in_blocks(
     let made = manifest::Made {
         files: &files,
         others: &others,
+        samples: &samples,
         clipped: &clipped,
         quality: quality.as_ref(),
         run: options.run,
@@ -258,8 +262,7 @@ fn play(
             }
             for reading in moment.readings {
                 clipped[reading.sensor] += u64::from(reading.clipped);
-                let row = table::reading(plan.axes, reading);
-                book.row(table::TRUTH + 1 + reading.sensor, moment.t, row.values())?;
+                book.reading(table::TRUTH + 1 + reading.sensor, moment.t, plan.axes, reading)?;
             }
             Ok(())
         })?;
@@ -293,6 +296,18 @@ impl Book {
     fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError> {
         self.rows[table] += 1;
         self.writers.iter_mut().try_for_each(|(_, writer)| writer.row(table, t, values))
+    }
+
+    fn reading(
+        &mut self,
+        table: usize,
+        t: SimTime,
+        axes: Axes,
+        reading: &Reading,
+    ) -> Result<(), DatasetError> {
+        self.rows[table] += 1;
+        let row = table::reading(axes, reading);
+        self.writers.iter_mut().try_for_each(|(_, writer)| writer.reading(table, t, reading, row.values()))
     }
 
     fn close(self, folder: &Folder) -> Result<Vec<FileEntry>, DatasetError> {

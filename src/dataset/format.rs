@@ -4,6 +4,7 @@ use super::error::DatasetError;
 use super::folder::Folder;
 use super::table::{Column, Table};
 use crate::scene::Plan;
+use crate::sensor::Reading;
 use crate::time::SimTime;
 
 /// A format: its name and how to begin a dataset in it.
@@ -27,6 +28,20 @@ pub trait Writer {
     /// # Errors
     /// The file could not be written.
     fn row(&mut self, table: usize, t: SimTime, values: &[f64]) -> Result<(), DatasetError>;
+
+    /// Adds a sensor's reading to the table of that index: for most formats the row that it makes, `values`.
+    ///
+    /// # Errors
+    /// As of [`Writer::row`].
+    fn reading(
+        &mut self,
+        table: usize,
+        t: SimTime,
+        _reading: &Reading,
+        values: &[f64],
+    ) -> Result<(), DatasetError> {
+        self.row(table, t, values)
+    }
 
     /// Completes the files, told how many rows each table got.
     ///

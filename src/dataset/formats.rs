@@ -1,7 +1,7 @@
 //! The file formats as a table.
 
 use super::format::Format;
-use super::{csv, mat, npy, tum};
+use super::{csv, mat, npy, resd, tum};
 
 /// Every format of this build.
 pub static FORMATS: &[&Format] = &[
@@ -9,6 +9,7 @@ pub static FORMATS: &[&Format] = &[
     &npy::FORMAT,
     &mat::FORMAT,
     &tum::FORMAT,
+    &resd::FORMAT,
     #[cfg(feature = "parquet")]
     &super::parquet::FORMAT,
     #[cfg(feature = "mcap")]

@@ -85,6 +85,8 @@ pub(super) struct Made<'a> {
     pub files: &'a [FileEntry],
     /// The names of the files without numbers.
     pub others: &'a [&'a str],
+    /// Samples of each sensor.
+    pub samples: &'a [u64],
     /// Clipped samples of each sensor.
     pub clipped: &'a [u64],
     pub quality: Option<&'a Quality>,
@@ -99,7 +101,7 @@ pub(super) fn text(
     made: &Made<'_>,
     folder: &Folder,
 ) -> Result<String, DatasetError> {
-    let &Made { files, others, clipped, quality, run, link_faults } = made;
+    let &Made { files, others, samples, clipped, quality, run, link_faults } = made;
     let other = |&name| Ok(OtherEntry { name, sha256: checksum(&folder.path(name))? });
     let part = |sensor: &SensorPlan| sensor.part.map(|part| (sensor.kind.name(), part));
     let manifest = Manifest {
@@ -112,7 +114,7 @@ pub(super) fn text(
         duration_ns: end.0,
         complete: true,
         conventions: conventions(plan),
-        sensors: sensors(plan, files, clipped),
+        sensors: sensors(plan, samples, clipped),
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
         faults: [plan.faults_until(end), link_faults.to_vec()].concat(),
@@ -125,13 +127,8 @@ pub(super) fn text(
     Ok(text.map_err(DatasetError::io("write", Path::new(MANIFEST)))? + "\n")
 }
 
-/// Whether a file holds a sensor's samples.
-fn is_of(sensor: &SensorPlan, file: &FileEntry) -> bool {
-    file.name.split('.').next() == Some(sensor.kind.name())
-}
-
-fn sensors(plan: &Plan, files: &[FileEntry], clipped: &[u64]) -> Vec<SensorEntry> {
-    let entry = |(sensor, &clipped): (&SensorPlan, &u64)| SensorEntry {
+fn sensors(plan: &Plan, samples: &[u64], clipped: &[u64]) -> Vec<SensorEntry> {
+    let entry = |((sensor, &samples), &clipped): ((&SensorPlan, &u64), &u64)| SensorEntry {
         name: sensor.kind.name(),
         unit: sensor.kind.unit(),
         rate: sensor.rate.to_string(),
@@ -140,10 +137,10 @@ fn sensors(plan: &Plan, files: &[FileEntry], clipped: &[u64]) -> Vec<SensorEntry
         sampling: sampling_name(sensor.sampling),
         mount: sensor.mount.map(|mount| mount.to_string()),
         terms: plan.build(sensor).terms().to_vec(),
-        samples: files.iter().find(|file| is_of(sensor, file)).map_or(0, |file| file.rows),
+        samples,
         clipped,
     };
-    plan.sensors.iter().zip(clipped).map(entry).collect()
+    plan.sensors.iter().zip(samples).zip(clipped).map(entry).collect()
 }
 
 /// As a scene spells it.

@@ -164,7 +164,11 @@ fn formats_section(files: &[FileEntry]) -> String {
     if lines.is_empty() {
         return String::new();
     }
-    let seconds = "Besides CSV a table has `t_s` behind `t_ns`: the time in seconds.\n";
+    let has_seconds = |file: &FileEntry| file.columns.iter().any(|column| column.name == "t_s");
+    let seconds = match files.iter().any(has_seconds) {
+        true => "Besides CSV a table has `t_s` behind `t_ns`: the time in seconds.\n",
+        false => "",
+    };
     format!("## Formats\n\n{}\n{seconds}", lines.concat())
 }
 

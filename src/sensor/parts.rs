@@ -30,13 +30,20 @@ pub struct Sourced {
     pub source: String,
 }
 
-static PARTS: [Part; 8] = [
+static PARTS: [Part; 11] = [
     Part {
         names: &["MPU-6050", "MPU-6000"],
         inside: &[],
         about: "six axes, TDK InvenSense",
         file: "parts/mpu-6050.toml",
         text: include_str!("parts/mpu-6050.toml"),
+    },
+    Part {
+        names: &["MPU-6500"],
+        inside: &[],
+        about: "six axes, TDK InvenSense",
+        file: "parts/mpu-6500.toml",
+        text: include_str!("parts/mpu-6500.toml"),
     },
     Part {
         names: &["MPU-9250"],
@@ -67,11 +74,25 @@ static PARTS: [Part; 8] = [
         text: include_str!("parts/bmi088.toml"),
     },
     Part {
+        names: &["BMI160"],
+        inside: &[],
+        about: "six axes, Bosch Sensortec",
+        file: "parts/bmi160.toml",
+        text: include_str!("parts/bmi160.toml"),
+    },
+    Part {
         names: &["BMI270"],
         inside: &[],
         about: "six axes, Bosch Sensortec",
         file: "parts/bmi270.toml",
         text: include_str!("parts/bmi270.toml"),
+    },
+    Part {
+        names: &["LSM6DSO"],
+        inside: &[],
+        about: "six axes, STMicroelectronics",
+        file: "parts/lsm6dso.toml",
+        text: include_str!("parts/lsm6dso.toml"),
     },
     Part {
         names: &["LSM9DS1"],

@@ -89,6 +89,7 @@ const ACCEL: &[(&str, f64)] =
 type Scales = &'static [(&'static str, f64)];
 const SCALES: &[(&str, Scales, Scales, Scales)] = &[
     ("MPU-6050", MPU_GYRO, ACCEL, &[]),
+    ("MPU-6500", MPU_GYRO, ACCEL, &[]),
     ("MPU-9250", MPU_GYRO, ACCEL, &[("4912 uT", 0.15)]),
     ("ICM-20948", MPU_GYRO, ACCEL, &[("4900 uT", 0.15)]),
     (
@@ -98,7 +99,19 @@ const SCALES: &[(&str, Scales, Scales, Scales)] = &[
         &[],
     ),
     ("BMI088", BOSCH_GYRO, &[("3 g", G / 10920.0), ("24 g", G / 1365.0)], &[]),
+    (
+        "BMI160",
+        &[("125 deg/s", DPS / 262.4), ("500 deg/s", DPS / 65.6), ("2000 deg/s", DPS / 16.4)],
+        ACCEL,
+        &[],
+    ),
     ("BMI270", BOSCH_GYRO, ACCEL, &[]),
+    (
+        "LSM6DSO",
+        &[("125 deg/s", 4.375e-3 * DPS), ("500 deg/s", 17.5e-3 * DPS), ("2000 deg/s", 70e-3 * DPS)],
+        &[("2 g", 0.061e-3 * G), ("16 g", 0.488e-3 * G)],
+        &[],
+    ),
     (
         "LSM9DS1",
         &[("245 deg/s", 8.75e-3 * DPS), ("500 deg/s", 17.5e-3 * DPS), ("2000 deg/s", 70e-3 * DPS)],
@@ -197,11 +210,14 @@ fn a_temperature_coefficient_of_a_sheet_acts_where_the_scene_gives_a_temperature
 fn the_noise_of_a_part_is_its_density_at_the_rate() {
     for (part, density) in [
         ("MPU-6050", 0.005),
+        ("MPU-6500", 0.01),
         ("MPU-9250", 0.01),
         ("ICM-20948", 0.015),
         ("ICM-42688-P", 0.0028),
         ("BMI088", 0.014),
+        ("BMI160", 0.007),
         ("BMI270", 0.007),
+        ("LSM6DSO", 0.0038),
         ("ADIS16470", 0.008),
     ] {
         let plan = plan(part, SensorKind::Gyro, "", 1).unwrap();
@@ -275,7 +291,13 @@ fn a_rate_that_the_part_has_not_is_told_with_its_nearest_ones() {
         ("ICM-20948", Gyro, "1125/11 Hz", "filter = \"DLPF 5\"\n"),
         ("ICM-20948", Gyro, "102.27 Hz", ""),
         ("ICM-42688-P", Gyro, "8 kHz", "filter = \"fixed\"\n"),
+        ("MPU-6500", Gyro, "200 Hz", dlpf_2),
+        ("MPU-6500", Accel, "4 kHz", "filter = \"Fchoice 0\"\n"),
+        ("BMI160", Gyro, "3200 Hz", "filter = \"OSR2\"\n"),
+        ("BMI160", Accel, "0.78125 Hz", ""),
         ("BMI270", Gyro, "1600 Hz", "filter = \"normal\"\n"),
+        ("LSM6DSO", Gyro, "6664 Hz", "filter = \"LPF1 FTYPE 3\"\n"),
+        ("LSM6DSO", Accel, "1.6 Hz", ""),
         ("BMI088", Accel, "12.5 Hz", "filter = \"OSR4\"\n"),
         ("LSM9DS1", Gyro, "59.5 Hz", ""),
         ("ADIS16470", Gyro, "2000/3 Hz", ""),
@@ -291,6 +313,7 @@ fn a_rate_that_the_part_has_not_is_told_with_its_nearest_ones() {
         ("ICM-20948", Gyro, "1 kHz", "", "the nearest are 1125/2 Hz and 1125 Hz"),
         ("ICM-42688-P", Gyro, "400 Hz", "", "the nearest are 200 Hz and 500 Hz"),
         ("BMI270", Accel, "1 kHz", "", "the nearest are 800 Hz and 1600 Hz"),
+        ("LSM6DSO", Gyro, "1 kHz", "", "the nearest are 833 Hz and 1666 Hz"),
         ("ADIS16470", Gyro, "8 kHz", "", "the nearest is 2000 Hz"),
     ] {
         let told = warnings(part, kind, rate, more);
@@ -299,7 +322,7 @@ fn a_rate_that_the_part_has_not_is_told_with_its_nearest_ones() {
     assert_eq!(warnings("MPU-9250", Gyro, "900 Hz", "filter = \"33 Hz\"\n").len(), 1, "whatever the cut-off");
 }
 
-/// One name, another bandwidth at another rate: DS-000347 section 5.5, BST-BMI088-DS001 table 8.
+/// One name, another bandwidth at another rate: DS-000347 section 5.5, BST-BMI088-DS001 table 8, DS12140 tables 18 and 65.
 #[test]
 fn a_named_filter_is_the_one_of_the_rate() {
     let found = |part: &str, kind, rate: &str, name: &str| {
@@ -321,9 +344,19 @@ fn a_named_filter_is_the_one_of_the_rate() {
         ("ICM-42688-P", Gyro, "1 kHz", "BW 1", 230.7, 2, 2.1),
         ("ICM-42688-P", Accel, "500 Hz", "bw 1", 115.3, 2, 4.1),
         ("ICM-42688-P", Gyro, "25 Hz", "BW 15", 52.4, 2, 7.5),
+        ("ICM-42688-P", Gyro, "1 kHz", "BW 1 order 1", 227.2, 1, 1.8),
+        ("ICM-42688-P", Accel, "100 Hz", "BW 7 order 3", 10.1, 2, 35.2),
         ("ICM-42688-P", Gyro, "8 kHz", "fixed", 2096.3, 2, 0.2),
         ("BMI088", Accel, "400 Hz", "OSR2", 75.0, 2, 0.0),
         ("BMI270", Gyro, "200 Hz", "normal", 77.0, 2, 5.97),
+        ("BMI270", Gyro, "200 Hz", "OSR4", 20.0, 2, 0.0),
+        ("BMI270", Accel, "1600 Hz", "OSR2", 343.0, 2, 0.0),
+        ("BMI160", Accel, "1600 Hz", "normal", 684.0, 2, 0.0),
+        ("BMI160", Accel, "50 Hz", "OSR4", 5.06, 2, 0.0),
+        ("LSM6DSO", Gyro, "6664 Hz", "LPF1 FTYPE 0", 335.5, 2, 0.0),
+        ("LSM6DSO", Gyro, "416 Hz", "LPF2", 135.9, 2, 0.0),
+        ("LSM6DSO", Accel, "104 Hz", "LPF2 ODR/4", 26.0, 2, 0.0),
+        ("MPU-6500", Accel, "1 kHz", "DLPF 7", 460.0, 1, 1.94),
         ("ICM-20948", Gyro, "1125 Hz", "DLPF 3", 51.2, 1, 0.0),
         ("MPU-9250", Accel, "1 kHz", "DLPF 3", 44.8, 1, 4.88),
     ] {
@@ -333,6 +366,29 @@ fn a_named_filter_is_the_one_of_the_rate() {
             1e3 * if order == 2 { std::f64::consts::SQRT_2 } else { 1.0 } / (std::f64::consts::TAU * hz);
         let total = own + rest.seconds() * 1e3;
         assert!((total - f64::max(ms, own)).abs() < 1e-5, "{part} {kind} {rate}: {total} ms");
+    }
+}
+
+/// The filter of Bosch's sensors at an oversampling of 2 or 4 is the normal one of half or a quarter of the rate:
+/// BST-BMI160-DS000 section 2.4.1.1.
+#[test]
+fn oversampling_is_the_normal_filter_of_a_slower_rate() {
+    for part in ["BMI160", "BMI270"] {
+        for kind in [SensorKind::Gyro, SensorKind::Accel] {
+            let settings = scene::parts::settings(parts::find(part, kind).unwrap(), kind).unwrap();
+            let low_pass = |name: &str, rate: f64| {
+                let is = |filter: &&scene::parts::Filter| filter.name == name && filter.at[0].as_hz() == rate;
+                settings.filters.iter().find(is).map(|filter| filter.low_pass)
+            };
+            let mut compared = 0;
+            for filter in settings.filters.iter().filter(|filter| filter.name != "normal") {
+                let (rate, by) = (filter.at[0].as_hz(), if filter.name == "OSR2" { 2.0 } else { 4.0 });
+                let Some(normal) = low_pass("normal", rate / by) else { continue };
+                assert_eq!(filter.low_pass, normal, "{part} {kind}: {filter}");
+                compared += 1;
+            }
+            assert_eq!(compared, 7 + 6, "{part} {kind}: of eight rates, all but the slowest");
+        }
     }
 }
 

@@ -169,7 +169,7 @@ fn a_list_shows_one_of_it_by_name_with_all_that_is_known() {
     assert_eq!(ratetable_in(folder.path(), &["check", "mine.toml"]).code, 0);
     let formats = ratetable(&["list", "formats"]).out;
     let help = ratetable(&["generate", "--help"]).out;
-    for format in ["csv", "npy", "mat", "tum", "parquet", "mcap"] {
+    for format in ["csv", "npy", "mat", "tum", "resd", "parquet", "mcap"] {
         assert!(formats.contains(format) && help.contains(format), "{format} is there, or is told to lack");
     }
     assert!(ratetable(&["list", "fields", "run"]).out.contains("  sensors.NAME.late_us.p99: µs\n"));

@@ -20,6 +20,7 @@ mod pages;
 mod parts;
 mod recordings;
 mod reference;
+mod resd;
 mod score;
 mod score_formats;
 mod study;

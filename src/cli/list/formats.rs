@@ -22,7 +22,7 @@ fn lacking() -> impl Iterator<Item = &'static str> {
     FEATURES.into_iter().filter(|name| Format::from_name(name).is_none())
 }
 
-/// `csv, npy, mat, tum; this build lacks parquet and mcap`.
+/// `csv, npy, mat, tum, resd; not in this build: parquet and mcap`.
 pub fn named() -> String {
     let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
     let lacking: Vec<_> = lacking().collect();

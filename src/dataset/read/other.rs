@@ -90,6 +90,11 @@ fn rows(folder: &Path, what: What) -> Result<Option<(PathBuf, Rows)>, DatasetErr
         check(&file, &rows, &names)?;
         return Ok(Some((file, rows)));
     }
+    if folder.join("dataset.resd").exists() {
+        let problem = "RESD holds the readings as a chip's model takes them, and no truth: generate it with --format csv, npy, mat, parquet or mcap too";
+        let place = folder.display().to_string();
+        return Err(DatasetError::Content { place, problem: problem.into() });
+    }
     if what != What::Truth && folder.join("truth.tum").exists() && lists(folder, SensorKind::Gyro) {
         let problem = format!(
             "TUM trajectories hold only attitudes, and {} has no other format with readings: generate it with --format csv, npy, mat, parquet or mcap too",

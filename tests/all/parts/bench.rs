@@ -4,6 +4,7 @@ use super::sheet::{Axes, G};
 use ratetable::player::{BLOCK, Player};
 use ratetable::scene::Plan;
 use ratetable::sensor::{SensorKind, TERMS};
+use ratetable::time::Rate;
 use std::f64::consts::TAU;
 
 /// Specimens of each part.
@@ -214,8 +215,11 @@ pub fn ends(part: &str, kind: SensorKind, range: f64, more: &str) -> Ends {
     }
 }
 
-/// The gain of a part's filter, by its name and at a rate, for a sine of this frequency (Hz).
-pub fn gain(part: &str, kind: SensorKind, filter: &str, rate: &str, hz: f64) -> f64 {
+/// The gain of a part's filter, by its name and at a rate, for a sine of this frequency (Hz). At half the rate a sine has
+/// no phase that samples could show: it is then measured at a rate 0.2 % lower, which is the same setting.
+pub fn gain(part: &str, kind: SensorKind, filter: &str, rate: &Rate, hz: f64) -> f64 {
+    let half = (2.0 * hz / rate.as_hz() - 1.0).abs() < 1e-6;
+    let rate = if half { format!("{} Hz", 0.998 * rate.as_hz()) } else { rate.to_string() };
     let unit = ["rad/s", "m/s^2"][kind as usize];
     let text = format!(
         "duration = \"600 s\"\n[{kind}]\npart = \"{part}\"\nrate = \"{rate}\"\nfilter = \"{filter}\"\nvibration = {{ frequency = \"{hz} Hz\", amplitude = \"1 {unit}\" }}\n"
