@@ -25,6 +25,8 @@
 
 pub mod ak;
 mod fifo;
+pub mod icm20948;
+pub mod icm42688;
 mod latest;
 mod master;
 pub mod mpu;
