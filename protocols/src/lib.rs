@@ -26,6 +26,7 @@
 mod message;
 
 pub mod betaflight;
+pub mod bridge;
 mod bytes;
 mod checksum;
 pub mod chip;
