@@ -29,6 +29,8 @@ pub mod bmi160;
 pub mod bmi270;
 mod bosch;
 mod fifo;
+pub mod icm20948;
+pub mod icm42688;
 mod latest;
 pub mod lsm6dso;
 mod master;
@@ -187,4 +189,13 @@ pub fn read(registers: &mut dyn Registers, t_ns: u64, out: &mut [u8]) {
 /// The nearest count, clipped to what fits.
 fn temperature(celsius: f64, zero_c: f64, per_c: f64) -> i16 {
     crate::mpu::registers::nearest((celsius - zero_c) * per_c)
+}
+
+/// Counts moved by so many each, clipped to what fits.
+fn shifted(counts: [i16; 3], by: [i32; 3]) -> [i16; 3] {
+    let mut moved = counts;
+    for (count, by) in moved.iter_mut().zip(by) {
+        *count = (i32::from(*count) + by).clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
+    }
+    moved
 }

@@ -177,9 +177,7 @@ impl<'a> Board<'a> {
                         *scale = Some(Scale::new(plan, kind));
                         self.changes.push(change);
                     }
-                    Err(why) => {
-                        self.trouble = Some(format!("{} at {:#04x}: {why}", kind.part, self.chips[i].address))
-                    }
+                    Err(why) => self.trouble = Some(format!("{}: {why}", self.chips[i])),
                 }
             }
         }

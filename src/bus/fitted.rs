@@ -3,6 +3,12 @@
 use crate::geometry::{Body, Vector};
 use crate::sensor::{Mount, SensorKind, SensorPlan, lsb};
 use ratetable_protocols::chip::ak::{self, Ak};
+use ratetable_protocols::chip::bmi088::Bmi088;
+use ratetable_protocols::chip::bmi160::Bmi160;
+use ratetable_protocols::chip::bmi270::Bmi270;
+use ratetable_protocols::chip::icm20948::Icm20948;
+use ratetable_protocols::chip::icm42688::Icm42688;
+use ratetable_protocols::chip::lsm6dso::Lsm6dso;
 use ratetable_protocols::chip::mpu::Mpu;
 use ratetable_protocols::chip::{Channel, Chip};
 use ratetable_protocols::mpu::registers;
@@ -12,13 +18,37 @@ use ratetable_protocols::mpu::registers;
 pub struct ChipKind {
     /// The part whose data it has, as `part = "…"` names it.
     pub part: &'static str,
-    /// What it senses.
-    pub channels: &'static [Channel],
-    /// Where it may answer, 7 bits; the first is the default.
-    pub addresses: &'static [u8],
+    /// What it senses, and where that may answer, 7 bits; the first address is the usual one. Most answer at one address
+    /// for all that they sense.
+    pub places: &'static [(&'static [Channel], &'static [u8])],
     /// From the axes of its gyro and accelerometer to those of its magnetometer.
     turn: fn([f64; 3]) -> [f64; 3],
-    make: fn(u8) -> Box<dyn Chip + Send>,
+    /// From an address for each of its places.
+    make: fn(&[u8]) -> Box<dyn Chip + Send>,
+}
+
+impl ChipKind {
+    /// What it senses.
+    pub fn channels(&self) -> impl Iterator<Item = Channel> {
+        self.places.iter().flat_map(|(channels, _)| channels.iter().copied())
+    }
+
+    fn has(&self, channel: Channel) -> bool {
+        self.channels().any(|has| has == channel)
+    }
+
+    /// Which of its places a channel is at.
+    fn place(&self, channel: Channel) -> usize {
+        self.places.iter().position(|(channels, _)| channels.contains(&channel)).unwrap_or(0)
+    }
+
+    const fn new(
+        part: &'static str,
+        places: &'static [(&'static [Channel], &'static [u8])],
+        make: fn(&[u8]) -> Box<dyn Chip + Send>,
+    ) -> ChipKind {
+        ChipKind { part, places, turn: |v| v, make }
+    }
 }
 
 /// No adjustment of an AK8963's sensitivity.
@@ -26,62 +56,50 @@ const ASA: [u8; 3] = [128; 3];
 
 const SIX: &[Channel] = &[Channel::Gyro, Channel::Accel];
 const NINE: &[Channel] = &Channel::ALL;
-const INVENSENSE: &[u8] = &[0x68, 0x69];
-
-/// As it is.
-fn same(v: [f64; 3]) -> [f64; 3] {
-    v
-}
+const MAG: &[Channel] = &[Channel::Mag];
 
 /// Every chip.
 pub static CHIPS: &[ChipKind] = &[
+    ChipKind::new("MPU-6050", &[(SIX, &[0x68, 0x69])], |at| Box::new(Mpu::mpu6050(at[0]))),
+    ChipKind::new("MPU-6500", &[(SIX, &[0x68, 0x69])], |at| Box::new(Mpu::mpu6500(at[0]))),
     ChipKind {
-        part: "MPU-6050",
-        channels: SIX,
-        addresses: INVENSENSE,
-        turn: same,
-        make: |at| Box::new(Mpu::mpu6050(at)),
-    },
-    ChipKind {
-        part: "MPU-9250",
-        channels: NINE,
-        addresses: INVENSENSE,
         turn: registers::swap_mag_axes,
-        make: |at| Box::new(Mpu::mpu9250(at, ASA)),
+        ..ChipKind::new("MPU-9250", &[(NINE, &[0x68, 0x69])], |at| Box::new(Mpu::mpu9250(at[0], ASA)))
     },
     ChipKind {
-        part: "AK8963",
-        channels: &[Channel::Mag],
-        addresses: &[ak::ADDRESS],
-        turn: same,
-        make: |_| Box::new(Ak::ak8963(ASA)),
+        // DS-000189 figures 12 and 13.
+        turn: |[x, y, z]| [x, -y, -z],
+        ..ChipKind::new("ICM-20948", &[(NINE, &[0x68, 0x69])], |at| Box::new(Icm20948::new(at[0])))
     },
-    ChipKind {
-        part: "AK09916",
-        channels: &[Channel::Mag],
-        addresses: &[ak::ADDRESS],
-        turn: same,
-        make: |_| Box::new(Ak::ak09916()),
-    },
+    ChipKind::new("ICM-42688-P", &[(SIX, &[0x68, 0x69])], |at| Box::new(Icm42688::new(at[0]))),
+    ChipKind::new("BMI088", &[(&[Channel::Gyro], &[0x68, 0x69]), (&[Channel::Accel], &[0x18, 0x19])], |at| {
+        Box::new(Bmi088::new(at[1], at[0]))
+    }),
+    ChipKind::new("BMI160", &[(SIX, &[0x68, 0x69])], |at| Box::new(Bmi160::new(at[0]))),
+    ChipKind::new("BMI270", &[(SIX, &[0x68, 0x69])], |at| Box::new(Bmi270::new(at[0]))),
+    ChipKind::new("LSM6DSO", &[(SIX, &[0x6a, 0x6b])], |at| Box::new(Lsm6dso::new(at[0]))),
+    ChipKind::new("AK8963", &[(MAG, &[ak::ADDRESS])], |_| Box::new(Ak::ak8963(ASA))),
+    ChipKind::new("AK09916", &[(MAG, &[ak::ADDRESS])], |_| Box::new(Ak::ak09916())),
 ];
 
 /// A chip with the sensors of a scene that it stands for.
 pub struct Fitted {
     /// What it is.
     pub kind: &'static ChipKind,
-    /// Where it answers.
-    pub address: u8,
+    /// Where it answers, for each of its places.
+    pub addresses: Vec<u8>,
     /// Which of the scene's sensors each of its channels measures, in the order of [`Channel::ALL`].
     pub sensors: [Option<usize>; 3],
     pub(super) chip: Box<dyn Chip + Send>,
 }
 
 impl std::fmt::Display for Fitted {
-    /// `MPU-9250 at 0x68 (gyro, accel, mag)`.
+    /// `MPU-9250 at 0x68 (gyro, accel, mag)`, `BMI088 at 0x68 and 0x18 (gyro, accel)`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let sensed = self.sensors.iter().zip(SensorKind::TRIADS).filter(|(sensor, _)| sensor.is_some());
         let names: Vec<_> = sensed.map(|(_, kind)| kind.name()).collect();
-        write!(f, "{} at {:#04x} ({})", self.kind.part, self.address, names.join(", "))
+        let addresses: Vec<_> = self.addresses.iter().map(|address| format!("{address:#04x}")).collect();
+        write!(f, "{} at {} ({})", self.kind.part, addresses.join(" and "), names.join(", "))
     }
 }
 
@@ -114,9 +132,7 @@ pub fn fit(sensors: &[SensorPlan], chip: Option<&str>) -> Result<Vec<Fitted>, St
     }
     // A magnetometer that is part of a chip on the board is that one.
     for (i, sensor, kind) in inside {
-        let host = chips
-            .iter_mut()
-            .find(|it| it.kind.channels.contains(&Channel::Mag) && holds(it.kind.part, kind.part));
+        let host = chips.iter_mut().find(|it| it.kind.has(Channel::Mag) && holds(it.kind.part, kind.part));
         match host {
             Some(host) if host.sensors[Channel::Mag as usize].is_none() => {
                 host.sensors[Channel::Mag as usize] = Some(i);
@@ -128,7 +144,7 @@ pub fn fit(sensors: &[SensorPlan], chip: Option<&str>) -> Result<Vec<Fitted>, St
         return Err("a bus needs a gyro, an accel or a mag in the scene".into());
     }
     for (i, a) in chips.iter().enumerate() {
-        if let Some(b) = chips[..i].iter().find(|b| b.address == a.address) {
+        if let Some(b) = chips[..i].iter().find(|b| b.addresses.iter().any(|it| a.addresses.contains(it))) {
             return Err(format!(
                 "{b} and {a} answer at the same address: give one of them another `address`"
             ));
@@ -145,7 +161,7 @@ fn kind_of(sensor: &SensorPlan, channel: Channel, chip: Option<&str>) -> Result<
             "[{kind}] has no part, so there is no chip for it on a bus: give it one, such as part = \"MPU-9250\", or give all of them `chip = \"MPU-9250\"` in [[output]], --set output.0.chip=… for registers without that part's errors"
         ));
     };
-    let has = |it: &&ChipKind| it.channels.contains(&channel);
+    let has = |it: &&ChipKind| it.has(channel);
     CHIPS.iter().filter(has).find(|it| it.part.eq_ignore_ascii_case(part)).ok_or_else(|| {
         let mut names: Vec<_> = CHIPS.iter().filter(has).map(|it| it.part).collect();
         names.dedup();
@@ -158,7 +174,7 @@ fn kind_of(sensor: &SensorPlan, channel: Channel, chip: Option<&str>) -> Result<
 
 /// Whether it is a magnetometer that others have inside.
 fn is_inside(kind: &ChipKind, channel: Channel) -> bool {
-    channel == Channel::Mag && kind.channels.len() == 1
+    channel == Channel::Mag && kind.channels().count() == 1
 }
 
 /// Whether a part has this magnetometer inside.
@@ -172,9 +188,10 @@ fn place(
     channel: Channel,
     (i, sensor): (usize, &SensorPlan),
 ) -> Result<(), String> {
-    let address = sensor.address;
-    if let Some(address) = address.filter(|address| !kind.addresses.contains(address)) {
-        let places: Vec<_> = kind.addresses.iter().map(|address| format!("{address:#04x}")).collect();
+    let (at, asked) = (kind.place(channel), sensor.address);
+    let usual = kind.places[at].1;
+    if let Some(address) = asked.filter(|address| !usual.contains(address)) {
+        let places: Vec<_> = usual.iter().map(|address| format!("{address:#04x}")).collect();
         return Err(format!(
             "[{}]: the {} answers at {}, not at {address:#04x}",
             sensor.kind,
@@ -182,20 +199,27 @@ fn place(
             places.join(" or ")
         ));
     }
-    let same = chips.iter_mut().find(|it| {
-        std::ptr::eq(it.kind, kind)
-            && it.sensors[channel as usize].is_none()
-            && address.is_none_or(|address| address == it.address)
-    });
-    match same {
-        Some(chip) => chip.sensors[channel as usize] = Some(i),
+    // The same chip, unless another address says that it is a second one.
+    let is_free = |it: &Fitted| {
+        let free = std::ptr::eq(it.kind, kind) && it.sensors[channel as usize].is_none();
+        let alone = kind.places[at].0.iter().all(|channel| it.sensors[*channel as usize].is_none());
+        free && (alone || asked.is_none_or(|address| address == it.addresses[at]))
+    };
+    let chip = match chips.iter_mut().position(|it| is_free(it)) {
+        Some(found) => &mut chips[found],
         None => {
-            let address = address.unwrap_or(kind.addresses[0]);
-            let mut sensors = [None; 3];
-            sensors[channel as usize] = Some(i);
-            chips.push(Fitted { kind, address, sensors, chip: (kind.make)(address) });
+            let addresses: Vec<u8> = kind.places.iter().map(|(_, usual)| usual[0]).collect();
+            let chip = (kind.make)(&addresses);
+            chips.push(Fitted { kind, addresses, sensors: [None; 3], chip });
+            let last = chips.len() - 1;
+            &mut chips[last]
         }
+    };
+    if let Some(address) = asked.filter(|address| *address != chip.addresses[at]) {
+        chip.addresses[at] = address;
+        chip.chip = (kind.make)(&chip.addresses);
     }
+    chip.sensors[channel as usize] = Some(i);
     Ok(())
 }
 
@@ -211,7 +235,7 @@ pub(super) struct Scale {
 impl Scale {
     /// Of a sensor as it is set now.
     pub fn new(sensor: &SensorPlan, kind: &ChipKind) -> Scale {
-        let turn = if sensor.kind == SensorKind::Mag { kind.turn } else { same };
+        let turn = if sensor.kind == SensorKind::Mag { kind.turn } else { |v| v };
         let count = lsb(&sensor.values, sensor.kind).unwrap_or(1.0);
         Scale { mount: sensor.mount.unwrap_or_else(Mount::flu), count, turn }
     }

@@ -161,9 +161,8 @@ fn every_setting_that_a_chip_can_be_asked_for_is_in_its_parts_data() {
         let part = crate::sensor::parts::find(kind.part, SensorKind::Gyro)
             .or_else(|| crate::sensor::parts::find(kind.part, SensorKind::Mag));
         let part = part.unwrap_or_else(|| panic!("{}", kind.part));
-        for channel in kind.channels {
-            let settings =
-                crate::scene::parts::settings(part, SensorKind::TRIADS[*channel as usize]).unwrap();
+        for channel in kind.channels() {
+            let settings = crate::scene::parts::settings(part, SensorKind::TRIADS[channel as usize]).unwrap();
             assert!(!settings.rates.is_empty() && !settings.scales.is_empty(), "{} {channel:?}", kind.part);
         }
     }
@@ -180,15 +179,16 @@ proptest! {
     ) {
         let kind = &CHIPS[kind];
         let mut text = "duration = \"1 s\"\n".to_string();
-        for channel in kind.channels {
-            text += &format!("[{}]\nrate = \"100 Hz\"\n", SensorKind::TRIADS[*channel as usize]);
+        for channel in kind.channels() {
+            text += &format!("[{}]\nrate = \"100 Hz\"\n", SensorKind::TRIADS[channel as usize]);
         }
         let plan = plan(&text);
         let rest = plan.at_rest();
         let mut board = Board::new(&plan, &rest, fit(&plan.sensors, Some(kind.part)).unwrap(), SimTime::ZERO).unwrap();
-        let address = kind.addresses[0];
+        let addresses: Vec<u8> = kind.places.iter().map(|(_, addresses)| addresses[0]).collect();
         board.begin(SimTime::ZERO);
         for (k, (register, values)) in writes.into_iter().enumerate() {
+            let address = addresses[k % addresses.len()];
             board.write(address, &[register, values[0], values[1]], false);
             if let Err(why) = board.advance(SimTime(k as i64 * MS / 4)) {
                 prop_assert!(false, "{} {register:#x} {values:x?}: {why}", kind.part);

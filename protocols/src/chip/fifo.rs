@@ -20,6 +20,57 @@ pub(super) struct Mark {
     pub ends: u8,
 }
 
+/// What a full FIFO does with new bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Full {
+    /// It takes none of them.
+    Stops,
+    /// Its oldest bytes make room, one by one.
+    LosesBytes,
+    /// Its oldest packets make room, each whole.
+    LosesPackets,
+}
+
+/// What a full FIFO lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Lost {
+    /// Of each channel.
+    pub samples: [u64; 3],
+    pub packets: u64,
+}
+
+/// What one moment puts in a FIFO.
+pub(super) struct Frame {
+    bytes: [(u8, Mark); 40],
+    len: usize,
+}
+
+impl Frame {
+    pub const fn new() -> Frame {
+        Frame { bytes: [(0, Mark { begins: 0, ends: 0 }); 40], len: 0 }
+    }
+
+    pub fn bytes(&self) -> &[(u8, Mark)] {
+        &self.bytes[..self.len]
+    }
+
+    /// Adds bytes; those that find no room are left out.
+    pub fn add(&mut self, bytes: &[u8]) {
+        for (to, byte) in self.bytes[self.len..].iter_mut().zip(bytes) {
+            to.0 = *byte;
+            self.len += 1;
+        }
+    }
+
+    /// Its last `len` bytes are a new sample of the channel, if `really`.
+    pub fn is_sample(&mut self, channel: Channel, len: usize, really: bool) {
+        if let Some(first) = self.len.checked_sub(len).filter(|first| really && *first < self.len) {
+            self.bytes[first].1.begins |= 1 << channel as u8;
+            self.bytes[self.len - 1].1.ends |= 1 << channel as u8;
+        }
+    }
+}
+
 impl<const N: usize> Fifo<N> {
     pub const fn new() -> Self {
         Self { bytes: [(0, Mark { begins: 0, ends: 0 }); N], first: 0, len: 0, torn: 0 }
@@ -73,11 +124,36 @@ impl<const N: usize> Fifo<N> {
         Some((byte, whole))
     }
 
-    /// Loses the oldest byte: the channels of which a sample is lost by it.
-    pub fn lose(&mut self) -> Option<u8> {
+    /// Loses the oldest byte: the channels of which a sample is lost by it, and those of which one ends there. A sample that
+    /// was read in part is lost with its last byte.
+    pub fn lose(&mut self) -> Option<(u8, u8)> {
         let (_, Mark { begins, ends }) = self.take()?;
+        let read_in_part = ends & !begins & !self.torn;
         self.torn = (self.torn | begins) & !ends;
-        Some(begins)
+        Some((begins | read_in_part, ends))
+    }
+
+    /// Puts bytes there that enter together, so that at most `size` are in it; what was lost where there was no room.
+    pub fn put(&mut self, bytes: &[(u8, Mark)], size: usize, full: Full) -> Option<Lost> {
+        let room = |fifo: &Self| size.min(N).saturating_sub(fifo.len);
+        let mut lost = None::<Lost>;
+        while room(self) < bytes.len() {
+            let lost = lost.get_or_insert_default();
+            if full == Full::Stops || self.len == 0 {
+                lost.packets += 1;
+                bytes.iter().for_each(|(_, mark)| add(&mut lost.samples, mark.begins));
+                return Some(*lost);
+            }
+            while let Some((channels, ends)) = self.lose() {
+                add(&mut lost.samples, channels);
+                if full == Full::LosesBytes || ends != 0 {
+                    break;
+                }
+            }
+            lost.packets += 1;
+        }
+        bytes.iter().for_each(|&(byte, mark)| self.push(byte, mark));
+        lost
     }
 
     /// Takes out everything: of each channel, how many samples are gone that were not lost before.
@@ -102,28 +178,63 @@ pub(super) fn add(counts: &mut [u64; 3], ends: u8) {
 mod tests {
     use super::*;
 
+    /// Adds the bytes of one sample of a channel.
+    fn put<const N: usize>(fifo: &mut Fifo<N>, bytes: &[u8], channel: Channel) -> Option<Lost> {
+        let mut frame = Frame::new();
+        frame.add(bytes);
+        frame.is_sample(channel, bytes.len(), true);
+        fifo.put(frame.bytes(), N, Full::Stops)
+    }
+
     #[test]
     fn bytes_leave_in_order_and_samples_are_counted_where_they_end() {
         let mut fifo = Fifo::<8>::new();
-        fifo.push_sample(&[1, 2, 3], Channel::Gyro);
-        fifo.push_sample(&[4, 5], Channel::Mag);
-        assert_eq!((fifo.len(), fifo.room()), (5, 3));
+        put(&mut fifo, &[1, 2, 3], Channel::Gyro);
+        put(&mut fifo, &[4, 5], Channel::Mag);
+        assert_eq!(fifo.len(), 5);
         assert_eq!([(); 3].map(|()| fifo.pop()), [Some((1, 0)), Some((2, 0)), Some((3, 1))]);
-        fifo.push_sample(&[6, 7, 8, 9, 10, 11, 12], Channel::Accel);
-        assert_eq!(fifo.room(), 0);
-        assert_eq!(fifo.clear(), [0, 0, 1], "the accelerometer's last byte found no room");
+        put(&mut fifo, &[6, 7, 8, 9, 10], Channel::Accel);
+        assert_eq!(fifo.clear(), [0, 1, 1]);
         assert_eq!(fifo.pop(), None);
     }
 
     #[test]
     fn a_sample_whose_first_byte_is_lost_is_not_read_as_a_whole_one() {
         let mut fifo = Fifo::<8>::new();
-        fifo.push_sample(&[1, 2, 3], Channel::Gyro);
-        fifo.push_sample(&[4, 5, 6], Channel::Gyro);
-        assert_eq!(fifo.lose(), Some(1), "one sample is lost with its first byte");
+        put(&mut fifo, &[1, 2, 3], Channel::Gyro);
+        put(&mut fifo, &[4, 5, 6], Channel::Gyro);
+        assert_eq!(fifo.lose(), Some((1, 0)), "one sample is lost with its first byte");
         assert_eq!(
             [(); 5].map(|()| fifo.pop()),
             [Some((2, 0)), Some((3, 0)), Some((4, 0)), Some((5, 0)), Some((6, 1))]
         );
+    }
+
+    #[test]
+    fn a_sample_that_was_read_in_part_is_lost_with_its_last_byte() {
+        let mut fifo = Fifo::<8>::new();
+        put(&mut fifo, &[1, 2, 3], Channel::Accel);
+        assert_eq!(fifo.pop(), Some((1, 0)));
+        assert_eq!([(); 2].map(|()| fifo.lose()), [Some((0, 0)), Some((2, 2))]);
+    }
+
+    #[test]
+    fn a_full_one_stops_or_loses_bytes_or_whole_packets() {
+        let rows = [
+            (Full::Stops, [0, 1, 0], 1, [1, 2, 3, 4]),
+            (Full::LosesBytes, [1, 0, 0], 2, [3, 4, 5, 6]),
+            (Full::LosesPackets, [1, 0, 0], 1, [4, 5, 6, 7]),
+        ];
+        for (full, samples, packets, next) in rows {
+            let mut fifo = Fifo::<8>::new();
+            put(&mut fifo, &[1, 2, 3], Channel::Gyro);
+            put(&mut fifo, &[4], Channel::Gyro);
+            let mut frame = Frame::new();
+            frame.add(&[5, 6, 7]);
+            frame.is_sample(Channel::Accel, 3, true);
+            let lost = fifo.put(frame.bytes(), 5, full);
+            assert_eq!(lost, Some(Lost { samples, packets }), "{full:?}");
+            assert_eq!([(); 4].map(|()| fifo.pop().map_or(0, |(byte, _)| byte)), next, "{full:?}");
+        }
     }
 }

@@ -22,7 +22,7 @@ mod rates;
 use super::ak::{self, Ak};
 use super::fifo::add;
 use super::master::{External, Slave, single};
-use super::{Channel, Chip, Fifo, Latest, Registers, Samples, Setting, Tally, temperature};
+use super::{Channel, Chip, Fifo, Latest, Registers, Samples, Setting, Tally, shifted, temperature};
 use crate::mpu::registers::Chip as Family;
 
 pub(super) const SMPLRT_DIV: u8 = 0x19;
@@ -218,13 +218,8 @@ impl Mpu {
     }
 
     /// A sample's counts with the driver's offset: `step` counts at the smallest full scale a unit of the register.
-    fn shifted(counts: [i16; 3], offsets: [i16; 3], step: i32, range: u8) -> [i16; 3] {
-        let mut shifted = counts;
-        for (count, offset) in shifted.iter_mut().zip(offsets) {
-            let moved = i32::from(*count) + ((i32::from(offset) * step) >> range);
-            *count = moved.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
-        }
-        shifted
+    fn with_offset(counts: [i16; 3], offsets: [i16; 3], step: i32, range: u8) -> [i16; 3] {
+        shifted(counts, offsets.map(|offset| (i32::from(offset) * step) >> range))
     }
 
     fn word(&self, register: u8) -> i16 {
@@ -234,17 +229,25 @@ impl Mpu {
     /// XG_OFFS_USR: 32.8 counts a deg/s, which is four counts at ±250 °/s (RM-MPU-6500A p. 10).
     fn with_gyro_offset(&self, counts: [i16; 3]) -> [i16; 3] {
         let offsets = [0x13, 0x15, 0x17].map(|register| self.word(register));
-        Mpu::shifted(counts, offsets, 4, self.of(GYRO_CONFIG) >> 3 & 3)
+        Mpu::with_offset(counts, offsets, 4, self.of(GYRO_CONFIG) >> 3 & 3)
     }
 
     /// XA_OFFS: 2048 counts a g of an MPU-6050, 1024 of the others, bit 0 reserved (RM-MPU-6500A p. 46).
     fn with_accel_offset(&self, counts: [i16; 3]) -> [i16; 3] {
         let range = self.of(ACCEL_CONFIG) >> 3 & 3;
         match self.model {
-            Model::Mpu60x0 => {
-                Mpu::shifted(counts, [0x06, 0x08, 0x0a].map(|register| self.word(register) & !1), 8, range)
-            }
-            _ => Mpu::shifted(counts, [0x77, 0x7a, 0x7d].map(|register| self.word(register) >> 1), 16, range),
+            Model::Mpu60x0 => Mpu::with_offset(
+                counts,
+                [0x06, 0x08, 0x0a].map(|register| self.word(register) & !1),
+                8,
+                range,
+            ),
+            _ => Mpu::with_offset(
+                counts,
+                [0x77, 0x7a, 0x7d].map(|register| self.word(register) >> 1),
+                16,
+                range,
+            ),
         }
     }
 
