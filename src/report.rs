@@ -10,6 +10,7 @@
 //! ```
 
 mod answers;
+mod bus;
 #[cfg(feature = "charts")]
 pub mod chart;
 mod heard;
@@ -21,6 +22,7 @@ mod times;
 mod timing;
 
 pub use answers::AnswersReport;
+pub use bus::{BusReport, ReadReport};
 pub use heard::{HeardLink, HeardReport, HeardSensor};
 pub use limit::{Limit, LimitError};
 pub use scored::{ScoreReport, Scored};
@@ -57,6 +59,9 @@ pub struct Report {
     pub speed: serde_json::Value,
     /// The faults that acted: `gyro stuck from 2 s to 3 s`, `mpu@pty drop from 2 s`.
     pub faults: Vec<String>,
+    /// What a driver set sensors to: `0 s gyro: 200 Hz, ±500 deg/s, low-pass 41 Hz`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub settings: Vec<String>,
     /// The machine.
     pub host: Host,
     /// Each sensor, counts summed over links.
@@ -161,6 +166,9 @@ pub struct SensorReport {
     pub interval_us: Option<Interval>,
     /// Duration of the write call itself, µs.
     pub write_us: Option<Spread>,
+    /// How a driver read it, on a bus.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub read: Option<ReadReport>,
     /// The additional figures of `timing`.
     #[serde(flatten)]
     pub timing: Option<SensorTiming>,
@@ -176,6 +184,7 @@ impl SensorReport {
             late_us: Some(Late::default()),
             interval_us: Some(Interval::default()),
             write_us: Some(Spread::default()),
+            read: Some(ReadReport { hz: Some(0.0), ..ReadReport::default() }),
             ..SensorReport::default()
         }
     }
@@ -268,6 +277,9 @@ pub struct LinkReport {
     /// What came back during the scene, where the other side answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<AnswersReport>,
+    /// What a driver asked, on a bus.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bus: Option<BusReport>,
     /// Damaged packets received.
     pub crc_errors: u64,
     /// Packets that the other side missed by their sequence numbers, if known.
@@ -287,6 +299,7 @@ impl LinkReport {
             queue_bytes: Some(0),
             gaps: Some(Gaps::default()),
             answers: Some(AnswersReport::shape()),
+            bus: Some(BusReport::shape()),
             faults: faults.map(|kind| (kind, 0)).collect(),
             ..LinkReport::default()
         }

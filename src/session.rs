@@ -17,6 +17,7 @@ mod absence;
 mod account;
 mod answers;
 mod budget;
+mod bus;
 mod command;
 mod control;
 mod ears;

@@ -54,6 +54,9 @@ pub struct Arguments {
 pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let shape = serde_json::to_value(shape(&arguments.from))?;
     arguments.limit.iter().try_for_each(|limit| limit.check(&shape))?;
+    if arguments.from.protocol == Protocol::Bus {
+        return Err(Refusal("the chips on a bus answer a driver and send nothing by themselves: serve them with `ratetable run SCENE --to bus@…`".into()));
+    }
     if arguments.attitude && arguments.from.protocol != Protocol::Mavlink {
         return Err(Refusal(format!(
             "--attitude asks over MAVLink, not over `{}`: listen to the controller's telemetry, such as mavlink@tcpout:127.0.0.1:5760",

@@ -127,6 +127,21 @@ pub fn output(text: &str) -> Result<Output, String> {
     Ok(Output::to(text.parse::<Destination>()?))
 }
 
+/// Where nothing is sent, and an attitude heard.
+pub fn mute(text: &str) -> Result<Output, String> {
+    let to = text.parse::<Destination>()?;
+    if to.protocol.dialogue(None).is_none() {
+        return Err(format!("nobody tells an attitude in `{}`: use mavlink, msp or mpu", to.protocol.name()));
+    }
+    if !to.address.answers() {
+        return Err(format!(
+            "nothing comes back on `{}`: use pty, a serial port, tcpin, tcpout or udpin",
+            to.address
+        ));
+    }
+    Ok(Output::mute(to))
+}
+
 /// Where packets come from.
 pub fn destination(text: &str) -> Result<Destination, String> {
     text.parse()

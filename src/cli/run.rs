@@ -4,6 +4,7 @@ use super::clash::{self, Besides};
 use super::demo::{Firmware, Received};
 use super::progress::Bar;
 use super::{Refusal, Verdict, options, say, summary, tell};
+use crate::bus;
 use crate::link::Address;
 use crate::report::Limit;
 use crate::scene::{Destination, Output, OutputFault, Plan, Target, Tells};
@@ -24,6 +25,9 @@ pub struct Arguments {
     /// Where to: PROTOCOL@LINK or TARGET@LINK, such as mpu@pty or px4@/dev/ttyACM0; may be repeated
     #[arg(long = "to", value_name = "PROTOCOL@LINK", value_parser = options::output)]
     to: Vec<Output>,
+    /// Where else the other side tells its attitude, such as mavlink@tcpin:127.0.0.1:5762: nothing is sent there
+    #[arg(long, value_name = "PROTOCOL@LINK", value_parser = options::mute)]
+    attitude: Option<Output>,
     /// How much of the scene, such as 90s; longer than it lasts holds at the end [default: all of it]
     #[arg(long = "for", value_name = "TIME|forever", value_parser = options::span)]
     span: Option<SimTime>,
@@ -75,14 +79,21 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     limits.iter().try_for_each(|limit| limit.check(&shape))?;
     refuse(arguments, &job)?;
     job.ground = ground(arguments.qgc.clone(), &job)?;
-    let (plan, target) = (job.plan.clone(), job.target());
+    let (mut plan, target, hears) = (job.plan.clone(), job.target(), job.hears());
     let (outcome, received) = play(job, demonstration)?;
+    if let Some(plan) = Arc::get_mut(&mut plan) {
+        plan.set(outcome.settings.iter().map(|it| (it.kind, it.setting.clone(), it.written.clone())));
+    }
     let estimator = target.map_or(if demonstration { "vqf" } else { "firmware" }, |target| target.name);
     let mut report = outcome.report(&plan, estimator);
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
     }
     outcome.judge(&mut report, &limits, target.is_some())?;
+    if let Some(to) = hears.filter(|_| outcome.estimates.is_empty()) {
+        report.ok = false;
+        report.failed.push(format!("no attitude came on {to}"));
+    }
     tell(&summary::run(&report, &outcome));
     let told = outcome.attitude.is_some();
     if let Some(target) = target.filter(|target| target.tells == Tells::Nothing && !told) {
@@ -110,6 +121,7 @@ fn job(arguments: &Arguments, plan: Plan) -> (Job, bool) {
     let outputs = if arguments.to.is_empty() { plan.outputs.clone() } else { arguments.to.clone() };
     let demonstration = outputs.is_empty();
     let mut outputs = if demonstration { vec![demo_output()] } else { outputs };
+    outputs.extend(arguments.attitude.clone());
     for output in &mut outputs {
         output.force |= arguments.force;
     }
@@ -186,6 +198,7 @@ fn refuse(arguments: &Arguments, Job { plan, outputs, .. }: &Job) -> Result<(), 
     if arguments.cpu.is_some() && arguments.speed == Speed::Max {
         return Err(Refusal("--cpu keeps the pacing thread to a processor, and --speed max paces nothing: leave out one of the two".into()));
     }
+    refuse_bus(arguments, plan, outputs)?;
     for output in outputs {
         let target = output.to.target.filter(|target| target.most_hz.is_some());
         let most = target.and_then(|target| Some((target.name, target.most_hz?)));
@@ -215,6 +228,42 @@ fn refuse(arguments: &Arguments, Job { plan, outputs, .. }: &Job) -> Result<(), 
         Speed::Times(times) => session::afford(plan, outputs, times, arguments.force, warn).map_err(Refusal),
         Speed::Max => Ok(()),
     }
+}
+
+/// What a bus, whose driver asks, cannot go with.
+fn refuse_bus(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<(), Refusal> {
+    let Some(bus) = outputs.iter().find(|output| output.to.protocol == Protocol::Bus) else { return Ok(()) };
+    if let Some(other) = outputs
+        .iter()
+        .find(|other| other.sends() || (other.to != bus.to && other.to.protocol == Protocol::Bus))
+    {
+        return Err(Refusal(format!(
+            "{} cannot go with {}: a driver asks the chips on a bus at times of its own. Play one of them alone; --attitude PROTOCOL@LINK hears an attitude beside it",
+            other.to, bus.to
+        )));
+    }
+    if arguments.speed == Speed::Max {
+        return Err(Refusal(
+            "--speed max sends as fast as the other side reads, and a driver on a bus asks: leave it out"
+                .into(),
+        ));
+    }
+    if !bus.to.address.is_stream() {
+        return Err(Refusal(format!(
+            "{}: a driver asks the chips on a bus, and this link carries no questions and answers in order: use pty, a serial port or tcpin",
+            bus.to
+        )));
+    }
+    if plan.sensors.iter().any(|sensor| !sensor.settings.is_empty()) {
+        return Err(Refusal(
+            "the scene has [[setting]], and on a bus the driver sets the sensors: leave one of them out"
+                .into(),
+        ));
+    }
+    for fault in &bus.faults {
+        tell(&format!("warning: the fault {fault} is one of packets, and a bus has none"));
+    }
+    bus::fit(&plan.sensors, bus.wire.chip).map(|_| ()).map_err(Refusal)
 }
 
 fn play(job: Job, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {

@@ -1,7 +1,7 @@
 //! The report of a run as a person reads it.
 
 use crate::cli::terminal::Stream;
-use crate::report::{AnswersReport, AttitudeReport, HeardReport, LinkReport, Report, number};
+use crate::report::{AnswersReport, AttitudeReport, BusReport, HeardReport, LinkReport, Report, number};
 use crate::score::DelayKnown;
 use crate::session::Outcome;
 use crate::time::SimTime;
@@ -19,9 +19,14 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     };
     let mut text =
         format!("\n{}: {} {speed}, seed {}{ended}\n\n", report.scene, played(outcome.played), report.seed);
-    text += &sensors(report);
-    text.push('\n');
-    text += &links(report);
+    match report.links.first().and_then(|link| Some((link, link.bus.as_ref()?))) {
+        Some((link, bus)) => text += &read_from(report, link, bus),
+        None => {
+            text += &sensors(report);
+            text.push('\n');
+            text += &links(report);
+        }
+    }
     if report.rest_s > 0.0 {
         text += &format!(
             "held still for {} s before the scene: those samples are in the counts\n",
@@ -46,6 +51,37 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
         text += &format!("FAILED: {failure}\n");
     }
     text
+}
+
+/// How a driver read the chips on a bus.
+fn read_from(report: &Report, link: &LinkReport, bus: &BusReport) -> String {
+    let rows = report.sensors.iter().filter_map(|sensor| {
+        let read = sensor.read?;
+        let counts = [sensor.made, read.samples, read.again, read.missed, read.overflowed, sensor.queued];
+        let hz = read.hz.map_or("-".into(), |hz| format!("{hz:.3}"));
+        Some([vec![sensor.name.clone(), hz], counts.map(|count| count.to_string()).to_vec()].concat())
+    });
+    let heading = ["sensor", "read Hz", "made", "read", "read again", "missed", "FIFO lost", "waiting"];
+    let mut text = Stream::Err.table(&heading, &rows.collect::<Vec<_>>());
+    text += &format!("\n{}: {} transfers", link.name, bus.transfers);
+    if let Some(rate) = bus.transfers_per_s {
+        text += &format!(", {} a second", number(rate));
+    }
+    if let Some(us) = bus.answer_us {
+        text += &format!(
+            "; answered in {} µs (p99 {}, longest {})",
+            number(us.p50),
+            number(us.p99),
+            number(us.max)
+        );
+    }
+    if bus.refused > 0 {
+        text += &format!("; {} not acknowledged", bus.refused);
+    }
+    if bus.strange > 0 {
+        text += &format!("; {} strange bytes", bus.strange);
+    }
+    text + "\n"
 }
 
 /// What happened on a link besides the packets.

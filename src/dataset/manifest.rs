@@ -9,7 +9,7 @@ use super::reference::Quality;
 use super::run::Run;
 use super::table::Column;
 use crate::scene::{Drawn, Plan};
-use crate::sensor::{Sampling, SensorPlan};
+use crate::sensor::{FILTER, LOW_PASS, RANGE, Sampling, Segment, SensorPlan, lsb};
 use crate::time::SimTime;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -58,6 +58,8 @@ struct Manifest<'a> {
     parts: BTreeMap<&'static str, &'static str>,
     drawn: &'a [Drawn],
     faults: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    settings: Vec<SettingEntry>,
     #[serde(skip_serializing_if = "Option::is_none")]
     run: Option<&'a Run>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -78,6 +80,20 @@ struct SensorEntry {
     terms: Vec<&'static str>,
     samples: u64,
     clipped: u64,
+}
+
+/// From when on a sensor was set to something else.
+#[derive(Serialize)]
+struct SettingEntry {
+    sensor: &'static str,
+    /// The first tick with it; where it is off, since when.
+    t_ns: i64,
+    /// `off` while it takes no samples.
+    rate: String,
+    /// In the unit of the sensor's columns.
+    range: Option<f64>,
+    count: Option<f64>,
+    low_pass_hz: Option<f64>,
 }
 
 /// What was made of a scene.
@@ -118,6 +134,7 @@ pub(super) fn text(
         parts: plan.sensors.iter().filter_map(part).collect(),
         drawn: &plan.drawn,
         faults: [plan.faults_until(end), link_faults.to_vec()].concat(),
+        settings: plan.sensors.iter().flat_map(|sensor| settings(sensor, end)).collect(),
         run,
         reference: quality,
         files,
@@ -125,6 +142,26 @@ pub(super) fn text(
     };
     let text = serde_json::to_string_pretty(&manifest).map_err(io::Error::other);
     Ok(text.map_err(DatasetError::io("write", Path::new(MANIFEST)))? + "\n")
+}
+
+/// What a sensor was set to before `end`.
+fn settings(sensor: &SensorPlan, end: SimTime) -> Vec<SettingEntry> {
+    if sensor.settings.is_empty() {
+        return Vec::new();
+    }
+    let segments = sensor.segments().into_iter().filter(|segment| segment.from < end);
+    let entry = |segment: Segment| {
+        let values = &segment.plan.values;
+        SettingEntry {
+            sensor: sensor.kind.name(),
+            t_ns: segment.from.0,
+            rate: segment.clock.map_or("off".into(), |_| segment.plan.rate.to_string()),
+            range: values.get(RANGE),
+            count: lsb(values, sensor.kind),
+            low_pass_hz: values.get(FILTER).and_then(|filter| filter.get(LOW_PASS)),
+        }
+    };
+    segments.map(entry).collect()
 }
 
 fn sensors(plan: &Plan, samples: &[u64], clipped: &[u64]) -> Vec<SensorEntry> {

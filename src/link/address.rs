@@ -84,6 +84,11 @@ impl Address {
         matches!(self, Self::Pty { .. } | Self::Serial { .. } | Self::TcpIn(_) | Self::TcpOut(_))
     }
 
+    /// Whether something can come back on it.
+    pub fn answers(&self) -> bool {
+        !matches!(self, Self::File { .. } | Self::Stdout)
+    }
+
     /// Whether it is standard output.
     pub fn is_stdout(&self) -> bool {
         *self == Self::Stdout

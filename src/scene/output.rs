@@ -8,6 +8,7 @@ use crate::sensor::{SensorKind, SensorPlan, parts};
 use crate::wire::{
     self, AtEnd, Claim, Controller, Extra, Extras, Layout, MagUnit, Protocol, Release, Thin, Version,
 };
+use ratetable_protocols::bridge::FIRST_BAUD;
 use std::fmt;
 use std::str::FromStr;
 
@@ -81,7 +82,9 @@ impl FromStr for Destination {
             return Err(format!("`{name}` is not a protocol of this version ({}){near}", names.join(", ")));
         };
         let mut address = address.parse::<Address>().map_err(|error| error.to_string())?;
-        if let Some(baud) = target.and_then(|target| target.baud) {
+        // A bridge powers on at its own speed.
+        let bridge = (protocol == Protocol::Bus).then_some(FIRST_BAUD);
+        if let Some(baud) = target.and_then(|target| target.baud).or(bridge) {
             address = address.or_baud(baud);
         }
         let (asked, told) = target.map_or((None, None), |target| (target.answers, target.overheard));
@@ -154,6 +157,17 @@ impl Output {
             ..wire::Options::default()
         };
         Output { to, wire, overload: Overload::default(), force: false, faults: Vec::new() }
+    }
+
+    /// One on which nothing is sent, for what the other side tells.
+    pub fn mute(to: Destination) -> Output {
+        let plain = Output::to(to);
+        Output { wire: wire::Options { is_mute: true, ..plain.wire }, ..plain }
+    }
+
+    /// Whether packets are sent on it at their time.
+    pub fn sends(&self) -> bool {
+        !self.wire.is_mute && self.to.protocol != Protocol::Bus
     }
 }
 

@@ -104,7 +104,8 @@ pub fn afford(
     warn: &mut dyn FnMut(String),
 ) -> Result<(), String> {
     let mut refused = Vec::new();
-    for output in outputs.iter().filter(|it| it.to.baud().is_some() && asks_rate(it).is_none()) {
+    for output in outputs.iter().filter(|it| it.to.baud().is_some() && it.sends() && asks_rate(it).is_none())
+    {
         let budget = Budget::of(plan, output, speed);
         let stretched = output.overload == Overload::Stretch;
         match budget.fits() {

@@ -20,12 +20,14 @@ use super::shared::TICK;
 use super::side::{Side, Waits};
 use super::talk::Talk;
 use super::watch::Watching;
-use super::{Event, Job, Outcome, Progress, SessionError, Shared, Speed, budget, ring, step};
+use super::{Event, Job, Outcome, Progress, SessionError, Shared, Speed, budget, bus, ring, step};
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
 use crate::motion::Truth;
+use crate::report::LinkReport;
 use crate::scene::Overload;
 use crate::time::SimTime;
+use crate::wire::Protocol;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -42,7 +44,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// At full speed nothing moves without a reader. A reader that is away this long has left for good.
 const ABSENCE: Duration = Duration::from_secs(5);
 /// Time for answers that are still on their way when the last packet is sent.
-const LAST_ANSWERS: Duration = Duration::from_millis(200);
+pub(super) const LAST_ANSWERS: Duration = Duration::from_millis(200);
 /// A link that does not take a farewell within this time does not get it.
 const FAREWELL: Duration = Duration::from_secs(1);
 
@@ -61,13 +63,13 @@ fn run_with(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Resul
     tokio::task::LocalSet::new().block_on(&runtime, Control::go(job, absence, on))
 }
 
-struct Control {
-    job: Job,
-    shared: Arc<Shared>,
-    clock: WallClock,
-    outputs: Vec<OpenOutput>,
-    talk: Rc<RefCell<Talk>>,
-    ears: Ears,
+pub(super) struct Control {
+    pub(super) job: Job,
+    pub(super) shared: Arc<Shared>,
+    pub(super) clock: WallClock,
+    pub(super) outputs: Vec<OpenOutput>,
+    pub(super) talk: Rc<RefCell<Talk>>,
+    pub(super) ears: Ears,
     hold: Hold,
     /// Set where nothing moves without a reader and nothing else ends the run.
     absence: Option<Absence>,
@@ -81,6 +83,10 @@ impl Control {
         let mut control = Control::open(job, absence).await?;
         control.open_ground(&mut outside).await?;
         control.outputs.iter().for_each(|output| output.introduce(&mut outside));
+        if let Some(bus) = bus::of(&control.job).cloned() {
+            control.listen();
+            return bus::run(control, bus, outside).await;
+        }
         let (inlet, outlet) = ring::ring(RING);
         let mut producing = Producing::NotYet(inlet);
         // Packets that do not depend on the other side's answers are made during the wait.
@@ -116,7 +122,8 @@ impl Control {
     /// Opens every link.
     async fn open(job: Job, absence: Duration) -> Result<Control, SessionError> {
         let mut outputs = Vec::new();
-        for output in &job.outputs {
+        // A bus has a thread of its own, which opens its link.
+        for output in job.outputs.iter().filter(|output| output.to.protocol != Protocol::Bus) {
             outputs.push(OpenOutput::open(output, job.ground.is_some()).await?);
         }
         let waits = Waits { paced: job.speed.is_paced(), rest: job.rest };
@@ -174,7 +181,8 @@ impl Control {
     async fn wait(&mut self, outside: &mut Outside<'_>) -> Result<bool, SessionError> {
         let waited = self.job.wait;
         let deadline = Instant::now() + waited;
-        for output in self.outputs.iter_mut().filter(|_| !waited.is_zero()) {
+        let sends = |output: &&mut OpenOutput| !waited.is_zero() && !output.output.wire.is_mute;
+        for output in self.outputs.iter_mut().filter(sends) {
             if !output.wait_for_reader(waited, deadline, outside).await? {
                 return Ok(false);
             }
@@ -296,7 +304,7 @@ impl Control {
         outside.tell(Event::Progress(self.progress()));
     }
 
-    fn progress(&self) -> Progress {
+    pub(super) fn progress(&self) -> Progress {
         let stream = self.shared.sent();
         let scene = self.shared.scene_time(stream);
         Progress {
@@ -309,7 +317,7 @@ impl Control {
     }
 
     /// Sends what the conversations have due, and passes on notices from the other sides.
-    fn tick(&self, outside: &mut Outside<'_>) {
+    pub(super) fn tick(&self, outside: &mut Outside<'_>) {
         self.talk.borrow_mut().tick(self.clock.now());
         let notices = self.talk.borrow_mut().take_notices();
         notices.into_iter().for_each(|notice| outside.notice(notice));
@@ -418,6 +426,13 @@ impl Control {
             faults: outputs().flat_map(|(it, account)| account.made.fired(&it.output)).collect(),
             ..Outcome::default()
         }
+    }
+
+    /// The reports of links on which nothing was sent.
+    pub(super) fn silent_links(&self) -> Vec<LinkReport> {
+        let talk = self.talk.borrow();
+        let account = Account::default();
+        self.outputs.iter().zip(&talk.sides).map(|(output, side)| output.report(&account, side)).collect()
     }
 
     fn never_started(&self, outside: &Outside<'_>) -> Outcome {

@@ -56,6 +56,19 @@ pub enum SessionError {
         "{0}; or start in spite of it, and lose what does not fit: --force, or force = true in [[output]]"
     )]
     TooSlow(String),
+    /// No driver read a sample.
+    #[error("no sample was read from the chips on {link} in {}: {came}; wait longer with --wait TIME, or start the scene at once with --wait 0", seconds(*waited))]
+    Unread {
+        /// What to connect to.
+        link: String,
+        /// How long the run waited.
+        waited: Duration,
+        /// What came instead.
+        came: String,
+    },
+    /// The scene's sensors are no chips, or a chip was set to something unknown.
+    #[error("{0}")]
+    Bus(String),
     /// The command did not start.
     #[error("`{program}` could not be started: {source}")]
     Command {

@@ -71,6 +71,11 @@ impl Job {
         self.outputs.iter().find_map(|output| output.to.target)
     }
 
+    /// Where nothing is sent and an attitude is heard.
+    pub fn hears(&self) -> Option<String> {
+        self.outputs.iter().find(|output| output.wire.is_mute).map(|output| output.to.to_string())
+    }
+
     /// The first output with a controller that a ground station can talk to.
     pub fn mavlink(&self) -> Option<usize> {
         self.outputs.iter().position(|output| output.to.protocol == Protocol::Mavlink)

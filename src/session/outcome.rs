@@ -3,6 +3,7 @@
 use super::host::host;
 use super::pace::Speed;
 use super::watch::Watched;
+use crate::bus::Change;
 use crate::geometry::Attitude;
 use crate::report::{AttitudeReport, Host, Limit, LinkReport, PacingReport, Report, SensorReport, number};
 use crate::scene::{Destination, Plan};
@@ -37,6 +38,8 @@ pub struct Outcome {
     pub links: Vec<LinkReport>,
     /// The faults of outputs that acted: `mpu@pty drop from 2 s to 3 s`.
     pub faults: Vec<String>,
+    /// What a driver set sensors to, on a bus.
+    pub settings: Vec<Change>,
     /// The verdict on the other side's estimates.
     pub attitude: Option<Figures>,
     /// Every estimate that came back, with the scene time at which it held, as far as known.
@@ -56,6 +59,7 @@ impl Outcome {
             stretched_s: self.stretched_s,
             speed: self.speed.report(),
             faults: [plan.faults_until(self.played), self.faults.clone()].concat(),
+            settings: self.settings.iter().map(|it| format!("{} {it}", it.setting.start)).collect(),
             host: Host { realtime, memory_locked, pacing, ..host() },
             sensors: self.sensors.clone(),
             links: self.links.clone(),
@@ -111,8 +115,12 @@ fn silent(link: &LinkReport) -> Option<String> {
 fn lost(report: &Report, fed: bool) -> Vec<String> {
     let excused = report.links.iter().any(is_enough)
         && report.links.iter().all(|link| is_enough(link) || (link.dropped == 0 && link.queued == 0));
-    // A controller that asks for fewer packets than there are samples loses none.
-    let given_up = |sensor: &SensorReport| if fed { sensor.replaced } else { 0 };
+    // A controller that asks for fewer packets than there are samples loses none, nor does a driver that reads fewer.
+    let given_up = |sensor: &SensorReport| match sensor.read {
+        Some(_) => sensor.dropped,
+        None if fed => sensor.replaced,
+        None => 0,
+    };
     let lost = report.sensors.iter().filter(|sensor| !excused && sensor.dropped > given_up(sensor));
     lost.map(|sensor| format!("sensors.{}.dropped = {} > 0", sensor.name, sensor.dropped)).collect()
 }

@@ -47,6 +47,8 @@ pub(super) struct Side {
     protocol: Protocol,
     /// Whether a controller of its make answers while the scene is played.
     must_answer: bool,
+    /// Whether nothing is sent to it.
+    is_mute: bool,
     /// Whether it can know its heading.
     has_heading: bool,
     lockstep: bool,
@@ -83,6 +85,7 @@ impl Side {
             answers: Answers::default(),
             to: output.to.to_string(),
             must_answer: tells != Tells::Nothing,
+            is_mute: output.wire.is_mute,
             has_heading: output.to.target.is_none_or(|target| target.has_heading),
             lockstep: in_lockstep(output),
             settling: rest
@@ -193,6 +196,10 @@ impl Side {
 
     /// The stage of the conversation.
     pub(super) fn stage(&self) -> Stage {
+        // Whoever only tells its attitude is not waited for.
+        if self.is_mute {
+            return Stage::Ready;
+        }
         let stage = self.dialogue.as_ref().map_or(Stage::Ready, |dialogue| dialogue.stage());
         match &self.settling {
             Some(settling) if !settling.is_settled() => stage.min(Stage::Still),

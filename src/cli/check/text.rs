@@ -161,6 +161,12 @@ fn manner(sensor: &SensorPlan) -> String {
     if let Some(mount) = sensor.mount {
         text += &format!(", mounted {mount}");
     }
+    for segment in sensor.segments().iter().skip(1) {
+        let rate = segment.clock.map_or("off".to_string(), |_| segment.plan.rate.to_string());
+        let range = segment.plan.values.get(RANGE);
+        let range = range.map_or(String::new(), |range| format!(" within ±{} {unit}", number(range * scale)));
+        text += &format!("; from {} on {rate}{range}", segment.from);
+    }
     if sensor.kind == SensorKind::Gps {
         let Claims { eph, epv, satellites } = Claims::of(&sensor.values);
         let (eph, epv) = (number(eph), number(epv));
