@@ -24,10 +24,15 @@
 //! ```
 
 pub mod ak;
+pub mod bmi088;
+pub mod bmi160;
+pub mod bmi270;
+mod bosch;
 mod fifo;
 pub mod icm20948;
 pub mod icm42688;
 mod latest;
+pub mod lsm6dso;
 mod master;
 pub mod mpu;
 
@@ -97,6 +102,9 @@ pub trait Registers {
 
     /// Reads a register at this time, ns, with what reading does to it.
     fn read(&mut self, t_ns: u64, register: u8) -> u8;
+
+    /// A read begins: a FIFO may repeat or lose the frame of which the read before left a part.
+    fn begin_read(&mut self) {}
 
     /// The register after this one in a burst: a FIFO's own address stays.
     fn after(&self, register: u8) -> u8 {
@@ -170,6 +178,7 @@ pub fn write(registers: &mut dyn Registers, t_ns: u64, bytes: &[u8], joined: boo
 
 /// Reads as many bytes as there is room for, from the pointer on.
 pub fn read(registers: &mut dyn Registers, t_ns: u64, out: &mut [u8]) {
+    registers.begin_read();
     for byte in out {
         let register = *registers.pointer();
         *byte = registers.read(t_ns, register);

@@ -81,12 +81,32 @@ impl<const N: usize> Fifo<N> {
         self.len
     }
 
+    /// Bytes that it has room for.
+    pub const fn room(&self) -> usize {
+        N - self.len
+    }
+
     /// Adds a byte; nothing where it is full.
     pub fn push(&mut self, byte: u8, mark: Mark) {
         if self.len < N {
             self.bytes[(self.first + self.len) % N] = (byte, mark);
             self.len += 1;
         }
+    }
+
+    /// Adds the bytes of one sample of a channel.
+    pub fn push_sample(&mut self, bytes: &[u8], channel: Channel) {
+        let bit = 1 << channel as u8;
+        for (i, byte) in bytes.iter().enumerate() {
+            let begins = if i == 0 { bit } else { 0 };
+            let ends = if i + 1 == bytes.len() { bit } else { 0 };
+            self.push(*byte, Mark { begins, ends });
+        }
+    }
+
+    /// The byte behind `index` older ones, and what it marks.
+    pub fn peek(&self, index: usize) -> Option<(u8, Mark)> {
+        (index < self.len).then(|| self.bytes[(self.first + index) % N])
     }
 
     fn take(&mut self) -> Option<(u8, Mark)> {
@@ -158,31 +178,24 @@ pub(super) fn add(counts: &mut [u64; 3], ends: u8) {
 mod tests {
     use super::*;
 
-    /// Adds the bytes of one sample of a channel.
-    fn put<const N: usize>(fifo: &mut Fifo<N>, bytes: &[u8], channel: Channel) -> Option<Lost> {
-        let mut frame = Frame::new();
-        frame.add(bytes);
-        frame.is_sample(channel, bytes.len(), true);
-        fifo.put(frame.bytes(), N, Full::Stops)
-    }
-
     #[test]
     fn bytes_leave_in_order_and_samples_are_counted_where_they_end() {
         let mut fifo = Fifo::<8>::new();
-        put(&mut fifo, &[1, 2, 3], Channel::Gyro);
-        put(&mut fifo, &[4, 5], Channel::Mag);
-        assert_eq!(fifo.len(), 5);
+        fifo.push_sample(&[1, 2, 3], Channel::Gyro);
+        fifo.push_sample(&[4, 5], Channel::Mag);
+        assert_eq!((fifo.len(), fifo.room()), (5, 3));
         assert_eq!([(); 3].map(|()| fifo.pop()), [Some((1, 0)), Some((2, 0)), Some((3, 1))]);
-        put(&mut fifo, &[6, 7, 8, 9, 10], Channel::Accel);
-        assert_eq!(fifo.clear(), [0, 1, 1]);
+        fifo.push_sample(&[6, 7, 8, 9, 10, 11, 12], Channel::Accel);
+        assert_eq!(fifo.room(), 0);
+        assert_eq!(fifo.clear(), [0, 0, 1], "the accelerometer's last byte found no room");
         assert_eq!(fifo.pop(), None);
     }
 
     #[test]
     fn a_sample_whose_first_byte_is_lost_is_not_read_as_a_whole_one() {
         let mut fifo = Fifo::<8>::new();
-        put(&mut fifo, &[1, 2, 3], Channel::Gyro);
-        put(&mut fifo, &[4, 5, 6], Channel::Gyro);
+        fifo.push_sample(&[1, 2, 3], Channel::Gyro);
+        fifo.push_sample(&[4, 5, 6], Channel::Gyro);
         assert_eq!(fifo.lose(), Some((1, 0)), "one sample is lost with its first byte");
         assert_eq!(
             [(); 5].map(|()| fifo.pop()),
@@ -193,7 +206,7 @@ mod tests {
     #[test]
     fn a_sample_that_was_read_in_part_is_lost_with_its_last_byte() {
         let mut fifo = Fifo::<8>::new();
-        put(&mut fifo, &[1, 2, 3], Channel::Accel);
+        fifo.push_sample(&[1, 2, 3], Channel::Accel);
         assert_eq!(fifo.pop(), Some((1, 0)));
         assert_eq!([(); 2].map(|()| fifo.lose()), [Some((0, 0)), Some((2, 2))]);
     }
@@ -207,8 +220,8 @@ mod tests {
         ];
         for (full, samples, packets, next) in rows {
             let mut fifo = Fifo::<8>::new();
-            put(&mut fifo, &[1, 2, 3], Channel::Gyro);
-            put(&mut fifo, &[4], Channel::Gyro);
+            fifo.push_sample(&[1, 2, 3], Channel::Gyro);
+            fifo.push_sample(&[4], Channel::Gyro);
             let mut frame = Frame::new();
             frame.add(&[5, 6, 7]);
             frame.is_sample(Channel::Accel, 3, true);
