@@ -2,12 +2,16 @@
 //! the sensing elements were given, within one count. The same function must notice a chip with a flaw.
 
 mod bench;
+mod bmi088;
+mod bmi160;
+mod bmi2;
 mod bus;
 mod flaw;
 mod hal;
 mod icm20948_async;
 mod icm20948_rs;
 mod icm426xx;
+mod lsm6dso;
 mod mpu6050;
 mod mpu6050_dmp;
 mod mpu9250;

@@ -107,8 +107,15 @@ impl<B: Bench> delay_02::DelayMs<u8> for Delay<'_, B> {
     }
 }
 
-/// A chip of TDK's at this address as its SPI reaches it: bit 7 of the first byte reads.
-pub struct Spi<B>(pub B, pub u8);
+/// A chip at this address as its SPI reaches it: bit 7 of the first byte reads, and so many bytes come before the data.
+pub struct Spi<B>(pub B, pub u8, pub usize);
+
+impl<B: I2c> Spi<B> {
+    fn take(&mut self, register: u8, out: &mut [u8]) -> Result<(), Fault> {
+        let data = out.get_mut(self.2..).unwrap_or_default();
+        self.0.write_read(self.1, &[register & 0x7f], data)
+    }
+}
 
 impl spi::Error for Fault {
     fn kind(&self) -> spi::ErrorKind {
@@ -122,7 +129,6 @@ impl<B> spi::ErrorType for Spi<B> {
 
 impl<B: I2c> spi::SpiDevice for Spi<B> {
     fn transaction(&mut self, operations: &mut [spi::Operation<'_, u8>]) -> Result<(), Fault> {
-        let Spi(bus, address) = self;
         let (mut sent, mut register) = (Vec::new(), None);
         for operation in operations {
             match operation {
@@ -131,17 +137,19 @@ impl<B: I2c> spi::SpiDevice for Spi<B> {
                 }
                 spi::Operation::Write(bytes) => sent.extend_from_slice(bytes),
                 spi::Operation::TransferInPlace([first, out @ ..]) if *first & 0x80 != 0 => {
-                    bus.write_read(*address, &[*first & 0x7f], out)?;
+                    let register = *first;
+                    self.take(register, out)?;
                 }
+                spi::Operation::TransferInPlace(bytes) => sent.extend_from_slice(bytes),
                 spi::Operation::Read(out) => match register {
-                    Some(register) => bus.write_read(*address, &[register], out)?,
-                    None => bus.read(*address, out)?,
+                    Some(register) => self.take(register, out)?,
+                    None => self.0.read(self.1, out)?,
                 },
                 spi::Operation::DelayNs(_) => {}
                 other => return Err(Fault::Other(format!("not a chip's: {other:?}"))),
             }
         }
-        if sent.is_empty() { Ok(()) } else { bus.write(*address, &sent) }
+        if sent.is_empty() { Ok(()) } else { self.0.write(self.1, &sent) }
     }
 }
 

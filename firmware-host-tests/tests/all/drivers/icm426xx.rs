@@ -17,7 +17,7 @@ const G: f64 = 9.80665;
 fn check(bench: &impl Bench) -> Verdict {
     let config = Config { rate: OutputDataRate::Hz200, ..Config::default() };
     let mut icm =
-        ICM42688::new(Spi(bench.bus(), 0x68)).initialize(Delay(bench), config).map_err(told("start"))?;
+        ICM42688::new(Spi(bench.bus(), 0x68, 0)).initialize(Delay(bench), config).map_err(told("start"))?;
     // At 25 °C, where the driver's scale of the temperature does not matter: it takes the 16 bits of a 20-bit packet for
     // the 8 of the others, 2.07 counts a °C and unsigned. The sheet has 132.48 (DS-000347 sections 6.1 and 14.6).
     let sensed = super::Sensed { celsius: 25.0, ..something(GYRO[7], ACCEL[3]) };
