@@ -45,6 +45,22 @@ fn check(bench: &impl Bench) -> Verdict {
     bench.is_set(Channel::Accel, (200, 1), 3, "BW 0")
 }
 
+/// What the driver makes of 35 °C: 1325 counts of 132.48 a °C, at 2.07 a °C.
+fn warm(bench: &impl Bench) -> Verdict {
+    let spi = Spi(bench.bus(), 0x68, 0);
+    let mut icm = ICM42688::new(spi).initialize(Delay(bench), Config::default()).map_err(told("start"))?;
+    bench.show(super::Sensed { celsius: 35.0, ..something(GYRO[7], ACCEL[3]) });
+    bench.wait(5_000_000);
+    let (sample, _) = icm.read_sample().map_err(told("read"))?.ok_or("no sample")?;
+    let read = (f64::from(sample.temperature_celsius) - 25.0) * 2.07;
+    agrees("temperature", [read; 3], [1325.0; 3], 1.0)
+}
+
+#[test]
+fn the_driver_reads_a_warm_icm42688_as_far_too_hot() {
+    agrees_everywhere!(warm, PART, Icm42688::new(0x68));
+}
+
 #[test]
 fn an_icm42688_reads_as_its_driver_scales_it() {
     agrees_everywhere!(check, PART, Icm42688::new(0x68));

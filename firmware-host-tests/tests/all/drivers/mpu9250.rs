@@ -65,6 +65,16 @@ fn imu(bench: &impl Bench) -> Verdict {
     bench.is_set(Channel::Gyro, (8000, 1), 0, "DLPF 0")
 }
 
+/// The driver takes the temperature's counts for unsigned: below 21 °C it is 65536/333.87 = 196 °C too high.
+fn cold(bench: &impl Bench) -> Verdict {
+    let mut mpu =
+        Mpu9250::imu_default(Hal(bench.bus()), &mut Delay(bench)).map_err(|it| format!("start: {it:?}"))?;
+    bench.show(super::Sensed { celsius: 15.0, ..something(GYRO[0], ACCEL[0]) });
+    bench.next();
+    let read = f64::from(mpu.temp().map_err(told("read"))?) - 65536.0 / 333.87;
+    agrees("temperature", [read; 3], [15.0; 3], 333.87)
+}
+
 fn chip() -> Mpu {
     Mpu::mpu9250(0x68, [128; 3])
 }
@@ -77,6 +87,11 @@ fn an_mpu9250_reads_as_its_driver_scales_it() {
 #[test]
 fn an_mpu6500_reads_as_the_driver_of_its_family_scales_it() {
     agrees_everywhere!(imu, TDK, Mpu::mpu6500(0x68));
+}
+
+#[test]
+fn the_driver_reads_a_cold_mpu9250_as_hot() {
+    agrees_everywhere!(cold, TDK, chip());
 }
 
 #[test]
