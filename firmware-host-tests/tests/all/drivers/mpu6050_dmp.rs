@@ -32,12 +32,8 @@ fn check(bench: &impl Bench) -> Verdict {
         (GyroFullScale::Deg2000, AccelFullScale::G16),
     ];
     for (range, (gyro, accel)) in ranges.into_iter().enumerate() {
+        started(bench)?.reset(&mut Delay(bench)).map_err(told("reset"))?;
         let mut mpu = started(bench)?;
-        mpu.reset(&mut Delay(bench)).map_err(told("reset"))?;
-        let mut mpu = {
-            drop(mpu);
-            started(bench)?
-        };
         mpu.set_gyro_full_scale(gyro).map_err(told("gyro"))?;
         mpu.set_accel_full_scale(accel).map_err(told("accel"))?;
         let sensed = something(GYRO[range], ACCEL[range]);
@@ -90,7 +86,6 @@ fn uploads(bench: &impl Bench) -> Verdict {
     let mut mpu =
         Mpu6050::new(Hal(&mut watched), Address::default()).map_err(|it| format!("start: {:?}", it.error))?;
     mpu.initialize_dmp(&mut Delay(bench)).map_err(|it| format!("DMP: {it:?}"))?;
-    drop(mpu);
     equal("chunks of the program", watched.program.len(), 3062_usize.div_ceil(16))?;
     for (bank, start, sent) in watched.program {
         let mut back = vec![0; sent.len()];
