@@ -4,4 +4,5 @@
 mod ahrs;
 mod board;
 mod common;
+mod drivers;
 mod emulator;

@@ -178,31 +178,24 @@ pub(super) fn add(counts: &mut [u64; 3], ends: u8) {
 mod tests {
     use super::*;
 
-    /// Adds the bytes of one sample of a channel.
-    fn put<const N: usize>(fifo: &mut Fifo<N>, bytes: &[u8], channel: Channel) -> Option<Lost> {
-        let mut frame = Frame::new();
-        frame.add(bytes);
-        frame.is_sample(channel, bytes.len(), true);
-        fifo.put(frame.bytes(), N, Full::Stops)
-    }
-
     #[test]
     fn bytes_leave_in_order_and_samples_are_counted_where_they_end() {
         let mut fifo = Fifo::<8>::new();
-        put(&mut fifo, &[1, 2, 3], Channel::Gyro);
-        put(&mut fifo, &[4, 5], Channel::Mag);
-        assert_eq!(fifo.len(), 5);
+        fifo.push_sample(&[1, 2, 3], Channel::Gyro);
+        fifo.push_sample(&[4, 5], Channel::Mag);
+        assert_eq!((fifo.len(), fifo.room()), (5, 3));
         assert_eq!([(); 3].map(|()| fifo.pop()), [Some((1, 0)), Some((2, 0)), Some((3, 1))]);
-        put(&mut fifo, &[6, 7, 8, 9, 10], Channel::Accel);
-        assert_eq!(fifo.clear(), [0, 1, 1]);
+        fifo.push_sample(&[6, 7, 8, 9, 10, 11, 12], Channel::Accel);
+        assert_eq!(fifo.room(), 0);
+        assert_eq!(fifo.clear(), [0, 0, 1], "the accelerometer's last byte found no room");
         assert_eq!(fifo.pop(), None);
     }
 
     #[test]
     fn a_sample_whose_first_byte_is_lost_is_not_read_as_a_whole_one() {
         let mut fifo = Fifo::<8>::new();
-        put(&mut fifo, &[1, 2, 3], Channel::Gyro);
-        put(&mut fifo, &[4, 5, 6], Channel::Gyro);
+        fifo.push_sample(&[1, 2, 3], Channel::Gyro);
+        fifo.push_sample(&[4, 5, 6], Channel::Gyro);
         assert_eq!(fifo.lose(), Some((1, 0)), "one sample is lost with its first byte");
         assert_eq!(
             [(); 5].map(|()| fifo.pop()),
@@ -213,7 +206,7 @@ mod tests {
     #[test]
     fn a_sample_that_was_read_in_part_is_lost_with_its_last_byte() {
         let mut fifo = Fifo::<8>::new();
-        put(&mut fifo, &[1, 2, 3], Channel::Accel);
+        fifo.push_sample(&[1, 2, 3], Channel::Accel);
         assert_eq!(fifo.pop(), Some((1, 0)));
         assert_eq!([(); 2].map(|()| fifo.lose()), [Some((0, 0)), Some((2, 2))]);
     }
@@ -227,8 +220,8 @@ mod tests {
         ];
         for (full, samples, packets, next) in rows {
             let mut fifo = Fifo::<8>::new();
-            put(&mut fifo, &[1, 2, 3], Channel::Gyro);
-            put(&mut fifo, &[4], Channel::Gyro);
+            fifo.push_sample(&[1, 2, 3], Channel::Gyro);
+            fifo.push_sample(&[4], Channel::Gyro);
             let mut frame = Frame::new();
             frame.add(&[5, 6, 7]);
             frame.is_sample(Channel::Accel, 3, true);
