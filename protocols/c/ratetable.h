@@ -375,8 +375,8 @@ static inline int rt__messages(rt_bus *bus, uint8_t addr, const uint8_t *data, s
     return RT_OK;
 }
 
-/* Asks how the transfer went: register 0A, I2CStat. */
-static inline int rt__status(rt_bus *bus) {
+/* Asks how the last transfer went: register 0A, I2CStat. Whatever but RT_E_TIMEOUT tells that a bridge is there. */
+static inline int rt_bus_status(rt_bus *bus) {
     static const uint8_t ask[] = {0x52, 0x0A, 0x50};
     uint8_t status;
     int result;
@@ -398,7 +398,7 @@ static inline int rt_i2c_write(rt_bus *bus, uint8_t addr, const uint8_t *data, s
     rt__drain(bus);
     if ((result = rt__messages(bus, addr, data, n)) != RT_OK) return result;
     if (bus->send(bus->context, &stop, 1) < 0) return RT_E_SEND;
-    return bus->unchecked ? RT_OK : rt__status(bus);
+    return bus->unchecked ? RT_OK : rt_bus_status(bus);
 }
 
 /* Reads n bytes, 1 to 255, behind what has been written. */
@@ -410,7 +410,7 @@ static inline int rt__read(rt_bus *bus, uint8_t addr, uint8_t *out, size_t n) {
     if (bus->send(bus->context, ask, 4) < 0) return RT_E_SEND;
     result = rt__receive(bus, out, n);
     if (bus->unchecked) return result;
-    status = rt__status(bus); /* says why nothing came */
+    status = rt_bus_status(bus); /* says why nothing came */
     return status != RT_OK ? status : result;
 }
 
