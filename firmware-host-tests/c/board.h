@@ -15,6 +15,9 @@ void board_start(int argc, char **argv);
 /* The board's own clock since its start, us. */
 uint64_t board_now_us(void);
 
+/* Sleeps until the clock is there. */
+void board_wait_until(uint64_t t_us);
+
 /* Waits for bytes from the link, at most this long; returns how many it took. 0 with `timeout_us` 0 is none there. */
 size_t board_read(uint8_t *bytes, size_t most, uint32_t timeout_us);
 

@@ -49,6 +49,17 @@ void board_start(int argc, char **argv) {
 
 uint64_t board_now_us(void) { return monotonic_us() - started_us; }
 
+void board_wait_until(uint64_t t_us) {
+    for (;;) {
+        uint64_t now = board_now_us();
+        struct timespec left;
+        if (now >= t_us) return;
+        left.tv_sec = (time_t)((t_us - now) / 1000000u);
+        left.tv_nsec = (long)((t_us - now) % 1000000u) * 1000;
+        nanosleep(&left, NULL);
+    }
+}
+
 /* Waits until a port can be read or written; returns what it can do. */
 static short wait_for(int fd, short events, uint64_t timeout_us) {
     struct pollfd one;

@@ -77,6 +77,13 @@ uint64_t board_now_us(void) {
     return ticks / TICKS_PER_US;
 }
 
+/* The last ms is waited awake, for only the SysTick ends a sleep. */
+void board_wait_until(uint64_t t_us) {
+    while (board_now_us() < t_us) {
+        if (t_us - board_now_us() > 1000) __asm volatile("wfi");
+    }
+}
+
 /* Sleeps until the next interrupt, at most a ms, unless bytes are there. An interrupt between the look and the sleep
  * ends the sleep: it is pending. */
 static void sleep_if_empty(void) {
@@ -99,19 +106,26 @@ size_t board_read(uint8_t *bytes, size_t most, uint32_t timeout_us) {
     return n;
 }
 
+/* Nobody takes anything from this port: what follows is lost at once. */
+static uint8_t is_stuck[2];
+
 void board_write(enum board_port port, const uint8_t *bytes, size_t n) {
     struct uart *uart = port == BOARD_LINK ? UART0 : UART1;
     uint64_t until = board_now_us() + 1000000u;
     while (n--) {
         while (uart->state & STATE_TX_FULL) {
-            if (board_now_us() > until) return;
+            if (is_stuck[port] || board_now_us() > until) {
+                is_stuck[port] = 1;
+                return;
+            }
         }
+        is_stuck[port] = 0;
         uart->data = *bytes++;
     }
 }
 
 void board_baud(uint32_t baud) {
-    while (UART0->state & STATE_TX_FULL) {}
+    while (UART0->state & STATE_TX_FULL && !is_stuck[BOARD_LINK]) {}
     UART0->bauddiv = 25000000u / baud;
 }
 

@@ -5,7 +5,7 @@
 #include "imu.h"
 #include "telemetry.h"
 
-static const uint32_t PERIOD_US = 5000, GIVE_UP_US = 2000000;
+static const uint32_t PERIOD_US = 5000, GIVE_UP_US = 1000000;
 
 static struct estimator estimator;
 
@@ -26,21 +26,17 @@ static int receive_bytes(void *context, uint8_t *bytes, size_t n, uint32_t timeo
     }
 }
 
-static void wait_until(uint64_t t_us) {
-    while (board_now_us() < t_us) {}
-}
-
 /* A bridge is at 9600 baud after its reset, and where this firmware has left it after the firmware's own. */
 static int find_bridge(rt_bus *bus) {
     static const uint32_t bauds[] = {9600, 115200};
     size_t i;
     for (i = 0; i < 2; i++) {
         board_baud(bauds[i]);
-        wait_until(board_now_us() + 1000u);
+        board_wait_until(board_now_us() + 1000u);
         if (rt_bus_status(bus) == RT_E_TIMEOUT) continue;
         if (bauds[i] == 115200) return 1;
         if (rt_bus_baud(bus, 115200) != RT_OK) return 0;
-        wait_until(board_now_us() + 10000u); /* six bytes at 9600 baud, and 1 ms */
+        board_wait_until(board_now_us() + 10000u); /* six bytes at 9600 baud, and 1 ms */
         board_baud(115200);
         return 1;
     }
@@ -57,13 +53,13 @@ static void take(uint64_t t_us, struct imu_sample *s) {
     if (estimator_due(&estimator)) telemetry_send(&estimator);
 }
 
-/* Reads until the chip has not answered for two seconds. */
+/* Reads until the chip has not answered for a second. */
 static void run(rt_bus *bus) {
     uint64_t due_us = board_now_us(), heard_us = due_us;
     while (board_now_us() - heard_us < GIVE_UP_US && !board_closed()) {
         struct imu_sample sample;
         uint64_t t_us;
-        wait_until(due_us);
+        board_wait_until(due_us);
         t_us = board_now_us();
         due_us = t_us - due_us > PERIOD_US ? t_us + PERIOD_US : due_us + PERIOD_US; /* what is late is left out */
         if (imu_read(bus, &sample) <= 0) continue;
@@ -74,15 +70,18 @@ static void run(rt_bus *bus) {
 
 int main(int argc, char **argv) {
     static rt_bus bus;
+    int has_run = 0;
     board_start(argc, argv);
     bus.send = send_bytes;
     bus.receive = receive_bytes;
     bus.timeout_ms = 200;
     while (!board_closed()) {
-        if (!find_bridge(&bus) || imu_start(&bus) != 0) continue;
+        const int is_there = find_bridge(&bus);
+        if (!is_there && has_run) break;
+        if (!is_there || imu_start(&bus) != 0) continue;
         run(&bus);
-        board_exit(0);
+        has_run = 1;
     }
-    board_exit(1);
+    board_exit(has_run ? 0 : 1);
     return 1;
 }

@@ -25,13 +25,13 @@ static void mean(const float sum[3], uint32_t count, float out[3]) {
     for (i = 0; i < 3; i++) out[i] = sum[i] / (float)count;
 }
 
-/* Begins the filter once there was rest for long enough, and all three sensors are there. */
+/* Begins the filter once there was rest for long enough. A chip without a magnetometer is taken to head north. */
 static void begin_filter(struct estimator *e) {
-    float rate[3], force[3], field[3];
-    if (e->t_us - e->since_us < REST_US || !e->forces || !e->fields) return;
+    float rate[3], force[3], field[3] = {0, 0, 0};
+    if (e->t_us - e->since_us < REST_US || !e->forces) return;
     mean(e->rate, e->gyros, rate);
     mean(e->force, e->forces, force);
-    mean(e->field, e->fields, field);
+    if (e->fields) mean(e->field, e->fields, field);
     mahony_start(&e->filter, rate, force, field, DECLINATION);
     e->running = 1;
 }

@@ -17,11 +17,6 @@ enum { AK_POWER_DOWN = 0x00, AK_FUSE_ROM = 0x0F, AK_CONTINUOUS_100_HZ_16_BIT = 0
 /* What the chip is set to, as the stream `mpu` would tell it. */
 static rt_config config;
 
-static void wait_us(uint32_t us) {
-    uint64_t until = board_now_us() + us;
-    while (board_now_us() < until) {}
-}
-
 static int set(rt_bus *bus, uint8_t reg, uint8_t value) { return rt_i2c_write_register(bus, MPU, reg, value); }
 
 static int get(rt_bus *bus, uint8_t reg, uint8_t *value) { return rt_i2c_read_register(bus, MPU, reg, value, 1); }
@@ -54,7 +49,7 @@ static int ak_get(rt_bus *bus, uint8_t reg, uint8_t *value) {
 
 static int ak_set(rt_bus *bus, uint8_t reg, uint8_t value) {
     int result = slave(bus, AK8963, reg, &value);
-    wait_us(100); /* MS1356-E: between modes */
+    board_wait_until(board_now_us() + 100u); /* MS1356-E: between modes */
     return result;
 }
 

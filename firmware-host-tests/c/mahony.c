@@ -40,7 +40,7 @@ void mahony_start(struct mahony *m, const float rate[3], const float force[3], c
     matrix(m->q, r);
     north = r[0][0] * field[0] + r[0][1] * field[1] + r[0][2] * field[2];
     east = r[1][0] * field[0] + r[1][1] * field[1] + r[1][2] * field[2];
-    from_euler(roll, pitch, declination - atan2f(east, north), m->q);
+    if (hypotf(north, east) > 0) from_euler(roll, pitch, declination - atan2f(east, north), m->q);
     for (i = 0; i < 3; i++) {
         m->bias[i] = rate[i];
         m->level[i] = 0;

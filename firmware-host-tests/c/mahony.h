@@ -23,7 +23,8 @@ struct mahony {
 /* An accelerometer is believed within this part of 1 g. */
 #define MAHONY_G_SHARE 0.05f
 
-/* Begins at rest with means of all three sensors: rad/s, m/s^2, any unit. Declination in rad, positive east. */
+/* Begins at rest with means of all three sensors: rad/s, m/s^2, any unit; a field of zero is none, and north is ahead.
+ * Declination in rad, positive east. */
 void mahony_start(struct mahony *m, const float rate[3], const float force[3], const float field[3], float declination);
 
 /* A reading of each sensor, in body axes; where several are of one time, the gyro's first. */

@@ -328,20 +328,23 @@ enum {
     RT_E_TIMEOUT = -3, /* the bridge did not answer in time */
     RT_E_ADDRESS = -4, /* no chip acknowledged this address */
     RT_E_DATA = -5,    /* the chip did not acknowledge data */
-    RT_E_BUS = -6      /* the bridge reports a time-out or another failure */
+    RT_E_BUS = -6      /* the bridge reports a time-out, or something that is no status */
 };
+
+/* How long it is quiet behind the last byte of a late answer. */
+#define RT_QUIET_MS 5u
 
 /* A bridge. Set `send` and `receive`; all else may be 0. */
 typedef struct rt_bus {
     /* Sends n bytes; returns 0, or less than 0 if it cannot. */
     int (*send)(void *context, const uint8_t *bytes, size_t n);
-    /* Waits for n bytes, for at most this time (0: takes what is there); returns how many came, or less than 0. */
+    /* Waits for n bytes, for at most this time; returns how many came, or less than 0. */
     int (*receive)(void *context, uint8_t *bytes, size_t n, uint32_t timeout_ms);
     void *context;
     uint32_t timeout_ms; /* of one answer; 0 is 1000 ms */
     int unchecked;       /* 1: does not ask for the status of a transfer, which saves a round trip; 0xFF is then read
                             where nobody answers */
-    int late;            /* the header's own: an answer did not come and may come yet */
+    int late;            /* the header's own: 1 if answers and questions may be out of step */
 } rt_bus;
 
 static inline int rt__receive(rt_bus *bus, uint8_t *bytes, size_t n) {
@@ -351,12 +354,12 @@ static inline int rt__receive(rt_bus *bus, uint8_t *bytes, size_t n) {
     return RT_E_TIMEOUT;
 }
 
-/* Throws away what is left of an answer that was given up. */
+/* Behind an answer that was given up: throws away what comes until it is quiet. */
 static inline void rt__drain(rt_bus *bus) {
     uint8_t byte;
     int most = 1024;
     if (!bus->late) return;
-    while (most-- && bus->receive(bus->context, &byte, 1, 0) == 1) {}
+    while (most-- && bus->receive(bus->context, &byte, 1, RT_QUIET_MS) == 1) {}
     bus->late = 0;
 }
 
@@ -386,7 +389,10 @@ static inline int rt_bus_status(rt_bus *bus) {
     case 0xF0: return RT_OK;
     case 0xF1: return RT_E_ADDRESS;
     case 0xF2: return RT_E_DATA;
-    default: return RT_E_BUS;
+    case 0xF8: return RT_E_BUS;
+    default: /* no status at all */
+        bus->late = 1;
+        return RT_E_BUS;
     }
 }
 

@@ -82,7 +82,7 @@ static int bridge_send(void *context, const uint8_t *bytes, size_t n) {
 static int bridge_receive(void *context, uint8_t *bytes, size_t n, uint32_t timeout_ms) {
     size_t there = input_len - input_at;
     (void)context;
-    if (timeout_ms == 0) printf("(drained)");
+    if (timeout_ms == RT_QUIET_MS) printf("(drained)");
     if (n > there) n = there;
     if (n) memcpy(bytes, input + input_at, n);
     input_at += n;

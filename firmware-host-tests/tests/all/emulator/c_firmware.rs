@@ -1,8 +1,8 @@
 //! The firmware in C of `c/`, built for the host and for a Cortex-M4 in QEMU, behind the emulator.
 //!
 //! It needs `make` and `cc`; for the second `arm-none-eabi-gcc` and `qemu-system-arm` (Debian and Ubuntu: `gcc-arm-none-eabi
-//! libnewlib-arm-none-eabi qemu-system-arm`). Where one is missing the tests say so and pass, unless
-//! `RATETABLE_REQUIRE_PYTHON` is set, as `tests/run.sh` does.
+//! libnewlib-arm-none-eabi qemu-system-arm`). Where one is missing the tests say so and pass, unless `RATETABLE_REQUIRE_C`
+//! is set, as `.ci/run` does.
 
 use std::env;
 use std::fs;
@@ -57,7 +57,7 @@ impl Machine {
             "{self:?} needs `{missing}` (Debian and Ubuntu: apt install build-essential gcc-arm-none-eabi \
              libnewlib-arm-none-eabi qemu-system-arm)"
         );
-        assert!(env::var_os("RATETABLE_REQUIRE_PYTHON").is_none(), "{why}");
+        assert!(env::var_os("RATETABLE_REQUIRE_C").is_none(), "{why}");
         eprintln!("NOT TESTED: the firmware in C: {why}");
         false
     }
@@ -207,20 +207,47 @@ fn a_firmware_with_the_wrong_declination_does_not_pass() {
     assert!((told.rms_deg(&plan, 0.0) - off_deg).abs() < 1.0, "{}", told.rms_deg(&plan, 0.0));
 }
 
-/// The chip behind the bridge, in real time: the firmware's clock is its own, so that its offset is found first, by the
-/// motion.
+/// The chip behind the bridge, in real time. The firmware's clock is its own, so that its offset is found first, by the
+/// motion. A machine that is busy for long keeps the firmware from reading: it has three tries.
 fn follows_a_bus(machine: Machine) {
     if !machine.is_here() {
         return;
     }
     let plan = scene("level-then-turn", &[]);
     let built = build(machine, 0.0);
-    let (_, told) = run(&["level-then-turn", "--to", "bus@pty"], machine, &built, "bus");
-    assert!(told.attitudes.len() > 2000, "{} attitudes", told.attitudes.len());
-    let offsets = (-400..=1000).map(|step| f64::from(step) * 0.005);
-    let best_deg = offsets.map(|ahead_s| told.rms_deg(&plan, ahead_s)).fold(f64::INFINITY, f64::min);
-    eprintln!("{machine:?}: {best_deg:.3} deg RMS");
-    assert!(best_deg < BOUND_DEG, "{best_deg}");
+    let rms_deg = |_| {
+        let (_, told) = run(&["level-then-turn", "--to", "bus@pty"], machine, &built, "bus");
+        assert!(told.attitudes.len() > 500, "{} attitudes", told.attitudes.len());
+        let offsets = (-400..=400).map(|step| f64::from(step) * 0.005);
+        offsets.map(|ahead_s| told.rms_deg(&plan, ahead_s)).fold(f64::INFINITY, f64::min)
+    };
+    let tries: Vec<f64> = (0..3).map(rms_deg).take_while(|rms_deg| *rms_deg >= BOUND_DEG).collect();
+    assert!(tries.len() < 3, "{tries:?} deg RMS");
+}
+
+/// A folder with a driver takes the place of this one.
+#[test]
+fn a_driver_of_ones_own_is_built_in_place_of_the_firmwares() {
+    if !Machine::Host.is_here() {
+        return;
+    }
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware-c-driver");
+    fs::create_dir_all(&folder).expect("a folder");
+    // An unused parameter: a warning in a driver is its own affair.
+    let driver = "#include \"imu.h\"\n#include \"chip.h\"\nint imu_start(rt_bus *bus) { return chip_start(); }\n\
+                  int imu_read(rt_bus *bus, struct imu_sample *out) { return 0; }\n";
+    let files = [
+        ("glue.c", driver),
+        ("chip.h", "int chip_start(void);\n"),
+        ("chip.c", "#include \"chip.h\"\nint chip_start(void) { return 0; }\n"),
+    ];
+    files.map(|(name, text)| fs::write(folder.join(name), text).expect("a file"));
+    let mut make = Command::new("make");
+    make.arg("--directory").arg(concat!(env!("CARGO_MANIFEST_DIR"), "/c")).arg("host");
+    make.arg(format!("OUT={}", folder.join("built").display()));
+    make.arg(format!("RATETABLE_C_DRIVER={}", folder.display()));
+    let told = make.output().expect("make starts");
+    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
 }
 
 #[test]
