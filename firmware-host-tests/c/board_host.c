@@ -21,9 +21,9 @@ static uint64_t monotonic_us(void) {
 }
 
 /* Opens a path; a terminal becomes raw and keeps what waits in it. */
-static int open_port(const char *path) {
+static int open_port(const char *path, int create) {
     struct termios raw;
-    int fd = open(path, O_RDWR | O_CREAT | O_NOCTTY | O_NONBLOCK | O_CLOEXEC, 0666);
+    int fd = open(path, O_RDWR | create | O_NOCTTY | O_NONBLOCK | O_CLOEXEC, 0666);
     if (fd < 0) {
         perror(path);
         exit(2);
@@ -43,8 +43,8 @@ void board_start(int argc, char **argv) {
         exit(2);
     }
     started_us = monotonic_us();
-    ports[BOARD_LINK] = open_port(argv[1]);
-    if (argc == 3) ports[BOARD_TELEMETRY] = open_port(argv[2]);
+    ports[BOARD_LINK] = open_port(argv[1], 0);
+    if (argc == 3) ports[BOARD_TELEMETRY] = open_port(argv[2], O_CREAT);
 }
 
 uint64_t board_now_us(void) { return monotonic_us() - started_us; }

@@ -9,6 +9,7 @@ static rt_decoder decoder;
 static rt_config config;
 static struct estimator estimator;
 static uint64_t t_us; /* the samples' time, unwrapped */
+static int has_time;
 static uint8_t answers;
 
 static void answer(const rt_packet *p) {
@@ -18,11 +19,19 @@ static void answer(const rt_packet *p) {
     telemetry_send(&estimator);
 }
 
+/* Goes on to the time of a packet; returns 0 for one that was overtaken. */
+static int advance(uint32_t packet_us) {
+    const uint32_t step = packet_us - (uint32_t)t_us;
+    if (has_time && step > 0x7FFFFFFFu) return 0;
+    has_time = 1;
+    t_us += step;
+    return 1;
+}
+
 static void take(const rt_packet *p) {
     float v[3];
     if (p->type == RT_CONFIG) config = p->config;
-    if (p->type == RT_CONFIG || p->type == RT_ATTITUDE) return;
-    t_us += p->t_us - (uint32_t)t_us;
+    if (p->type == RT_CONFIG || p->type == RT_ATTITUDE || !advance(p->t_us)) return;
     if ((p->type == RT_IMU || p->type == RT_GYRO) && rt_rate_rad_s(&config, p->gyro, v)) {
         rt_flip_yz(v);
         estimator_gyro(&estimator, t_us, v);

@@ -241,13 +241,17 @@ fn a_driver_of_ones_own_is_built_in_place_of_the_firmwares() {
         ("chip.h", "int chip_start(void);\n"),
         ("chip.c", "#include \"chip.h\"\nint chip_start(void) { return 0; }\n"),
     ];
-    files.map(|(name, text)| fs::write(folder.join(name), text).expect("a file"));
+    for (name, text) in files {
+        fs::write(folder.join(name), text).expect("a file");
+    }
     let mut make = Command::new("make");
     make.arg("--directory").arg(concat!(env!("CARGO_MANIFEST_DIR"), "/c")).arg("host");
     make.arg(format!("OUT={}", folder.join("built").display()));
     make.arg(format!("RATETABLE_C_DRIVER={}", folder.display()));
     let told = make.output().expect("make starts");
     assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+    let object = |name: &str| folder.join("built/host").join(name).exists();
+    assert!(object("driver/glue.o") && object("driver/chip.o") && !object("imu_mpu9250.o"));
 }
 
 #[test]
