@@ -52,11 +52,11 @@ int main(int argc, char **argv) {
     rt_packet packet;
     board_start(argc, argv);
     for (;;) {
-        size_t i, n = board_read(bytes, sizeof bytes, 1000000u);
+        size_t i, n = board_read(bytes, sizeof bytes, 1500000u);
         for (i = 0; i < n; i++) {
             if (rt_feed(&decoder, bytes[i], &packet)) take(&packet);
         }
-        /* A second of silence behind a stream is its end. */
+        /* Silence behind a stream is its end. */
         if (n == 0 && (decoder.packets > 0 || board_closed())) board_exit(decoder.packets > 0 ? 0 : 1);
     }
 }

@@ -163,10 +163,13 @@ fn follows_a_stream(machine: Machine, name: &str) {
     eprintln!("{name}, {machine:?}: answers {live_deg:.3} deg RMS, telemetry {told_deg:.3} deg RMS");
     assert!(live_deg < BOUND_DEG && told_deg < BOUND_DEG, "{live_deg} {told_deg}");
 
-    // It begins after 2 s of rest and tells every 20 ms of samples from then to the end.
+    // It begins after 2 s of rest and tells every 20 ms of samples from then to the end, but for what it has not read 2 s
+    // after the last byte, when the emulator ends it: on a busy machine some 20 kB in the pty and 4 kB in the firmware's
+    // own buffer, which is 3.1 s of the slower scene.
     let seconds = plan.duration.0 as f64 * 1e-9;
     let expected = ((seconds - 2.0) / 0.02) as usize;
-    assert!(told.attitudes.len().abs_diff(expected) <= 2, "{} of {expected}", told.attitudes.len());
+    let count = told.attitudes.len();
+    assert!((expected - 160..=expected + 2).contains(&count), "{count} of {expected}");
     assert!(told.beats >= 1);
     assert!(told.attitudes.windows(2).all(|pair| (pair[1].0 - pair[0].0 - 0.02).abs() < 1e-9));
 
