@@ -5,6 +5,7 @@
 //! other side reads: nothing is paced and nothing dropped, so no result depends on how busy the machine is.
 
 mod accuracy;
+mod c_firmware;
 mod mavlink_stream;
 mod mishaps;
 mod mpu_stream;

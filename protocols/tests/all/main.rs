@@ -1,6 +1,7 @@
 //! The crate against bytes that it did not make: golden packets, another MAVLink implementation, hostile bytes. One
 //! binary: `cargo test -p ratetable-protocols --test all vectors::` runs one module.
 
+mod c_header;
 mod common;
 mod mavlink_crate;
 mod properties;

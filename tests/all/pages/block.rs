@@ -42,6 +42,8 @@ pub struct Marks {
     pub continues: bool,
     /// A module of Python that not every machine has.
     pub needs: Option<String>,
+    /// Programs that not every machine has.
+    pub programs: Vec<String>,
 }
 
 /// How numbers are compared.
@@ -114,6 +116,9 @@ impl Marks {
             ("after", text) if !text.is_empty() => self.after = lines(text),
             ("continues", "") => self.continues = true,
             ("needs", module) if !module.is_empty() => self.needs = Some(module.to_string()),
+            ("programs", names) if !names.is_empty() => {
+                self.programs = names.split_whitespace().map(String::from).collect();
+            }
             _ => return Err(format!("`{mark}` is no mark of a block")),
         }
         Ok(())

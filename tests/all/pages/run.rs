@@ -54,7 +54,7 @@ impl Kit {
     /// A folder that looks like the root of the repository after a build.
     fn folder(&self) -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["scenes", "docs", "benches"] {
+        for name in ["scenes", "docs", "benches", "firmware-host-tests", "protocols"] {
             symlink(self.root.join(name), folder.path().join(name)).unwrap();
         }
         let built = folder.path().join("target/debug");
@@ -64,6 +64,10 @@ impl Kit {
         symlink(&program, built.join("ratetable")).unwrap();
         symlink(built.join("board"), folder.path().join("firmware")).unwrap();
         folder
+    }
+
+    fn has_program(&self, program: &str) -> bool {
+        env::split_paths(&self.path).any(|folder| folder.join(program).is_file())
     }
 
     fn has_module(&self, module: &str) -> bool {
@@ -155,6 +159,10 @@ impl Job<'_> {
         self.keep(block);
         if let Some(module) = block.marks.needs.as_ref().filter(|module| !self.kit.has_module(module)) {
             return Ok(Some(format!("there is no Python with {module}")));
+        }
+        if let Some(program) = block.marks.programs.iter().find(|program| !self.kit.has_program(program)) {
+            assert!(env::var_os("RATETABLE_REQUIRE_C").is_none(), "there is no `{program}`");
+            return Ok(Some(format!("there is no `{program}`")));
         }
         match block.language.as_str() {
             "sh" | "bash" => self.commands(&block.text, &block.marks).map(|()| None),
