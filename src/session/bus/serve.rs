@@ -3,7 +3,7 @@
 use super::News;
 use super::hints::Hints;
 use super::served::Served;
-use crate::bus::{Board, fit};
+use crate::bus::{Board, Change, fit};
 use crate::clock::{Clock, WallClock};
 use crate::link::{Link, Sender, Sent};
 use crate::report::Times;
@@ -15,12 +15,13 @@ use crate::session::shared::Shared;
 use crate::time::SimTime;
 use bytes::BytesMut;
 use ratetable_protocols::bridge::{Bridge, Counts};
+use std::pin::pin;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedSender;
-use tokio::time::{MissedTickBehavior, interval, timeout};
+use tokio::time::{Instant, MissedTickBehavior, interval};
 
 /// Time after which the scene is played on although nobody asks.
 const TICK: Duration = Duration::from_millis(1);
@@ -86,20 +87,14 @@ async fn serve(
     link.notices().iter().for_each(|notice| tell(News::Notice(notice.clone())));
     tell(News::Open(link.name().to_string()));
     let rest = task.plan.at_rest();
-    let chips = fit(&task.plan.sensors, task.output.wire.chip).map_err(SessionError::Bus)?;
-    let chips: Vec<String> = {
-        tell(News::Notice(format!(
-            "on the bus: {}",
-            chips.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
-        )));
-        chips.iter().map(ToString::to_string).collect()
-    };
+    let fitted = fit(&task.plan.sensors, task.output.wire.chip).map_err(SessionError::Bus)?;
+    let chips: Vec<String> = fitted.iter().map(ToString::to_string).collect();
+    tell(News::Notice(format!("on the bus: {}", chips.join(", "))));
     if !wait_for_driver(task, &mut link, shared, news).await? {
         return Ok(Served::default());
     }
     let granted = Granted::ask(task.cpu);
     granted.refused.iter().for_each(|refused| tell(News::Notice(refused.clone())));
-    let fitted = fit(&task.plan.sensors, task.output.wire.chip).map_err(SessionError::Bus)?;
     let board = Board::new(&task.plan, &rest, fitted, task.rest).map_err(SessionError::Bus)?;
     let speed = match task.speed {
         Speed::Times(times) => times,
@@ -113,6 +108,7 @@ async fn serve(
         clock,
         start: clock.now(),
         speed,
+        end: task.end,
         latency: Times::new(),
         bytes: 0,
         before: Counts::default(),
@@ -140,26 +136,26 @@ async fn wait_for_driver(
     shared: &Shared,
     news: &UnboundedSender<News>,
 ) -> Result<bool, SessionError> {
-    let mut waited = Duration::ZERO;
-    let mut told = false;
-    while !task.wait.is_zero() {
-        if let Ok(peer) = timeout(LOOK, link.peer()).await {
-            peer?;
-            break;
+    if task.wait.is_zero() {
+        return Ok(true);
+    }
+    let (name, since) = (link.name().to_string(), Instant::now());
+    let (mut peer, mut looks, mut told) = (pin!(link.peer()), interval(LOOK), false);
+    loop {
+        tokio::select! {
+            peer = &mut peer => return Ok(peer.map(|()| true)?),
+            _ = looks.tick() => {}
         }
-        waited += LOOK;
-        if shared.stopped() {
-            return Ok(false);
-        }
-        if waited >= task.wait {
-            let link = link.name().to_string();
-            return Err(SessionError::Nobody { link, waited: task.wait, hint: String::new() });
-        }
-        if waited >= PATIENCE && !std::mem::replace(&mut told, true) {
-            let _ = news.send(News::Waiting(task.wait - waited));
+        let left = task.wait.checked_sub(since.elapsed());
+        match left {
+            _ if shared.stopped() => return Ok(false),
+            None => return Err(SessionError::Nobody { link: name, waited: task.wait, hint: String::new() }),
+            Some(left) if since.elapsed() >= PATIENCE && !std::mem::replace(&mut told, true) => {
+                let _ = news.send(News::Waiting(left));
+            }
+            Some(_) => {}
         }
     }
-    Ok(true)
 }
 
 struct Server<'a> {
@@ -171,6 +167,8 @@ struct Server<'a> {
     /// The run's clock at stream time 0, ns.
     start: i64,
     speed: f64,
+    /// Scene time at which it ends.
+    end: SimTime,
     /// From a read of the link to the end of the write that answers it.
     latency: Times,
     /// Bytes of answers in the scene.
@@ -243,7 +241,11 @@ impl Server<'_> {
 
     /// Plays on to this time of the clock.
     fn go_on(&mut self, now: i64) -> Result<(), SessionError> {
-        let (had_begun, t) = (self.board.has_begun(), self.stream_time(now));
+        let (had_begun, mut t) = (self.board.has_begun(), self.stream_time(now));
+        // An end is exclusive: a sample that is due then is not made.
+        if let Some(start) = self.board.start() {
+            t = t.min(SimTime(start.0.saturating_add(self.end.0) - 1));
+        }
         self.board.advance(t).map_err(SessionError::Bus)?;
         self.shared.stream_ns.store(t.0, Ordering::Relaxed);
         if !had_begun && self.board.has_begun() {
@@ -286,19 +288,16 @@ impl Server<'_> {
         Ok(())
     }
 
-    /// Tells what the driver has set since this was asked last; before the scene that is not worth a word each.
+    /// Tells what the driver has set in the scene since this was told last.
     fn tell_changes(&mut self) {
-        let Some(start) = self.board.start() else { return };
-        let news: Vec<String> = self
-            .board
-            .news()
-            .iter()
-            .map(|change| match change.setting.start {
-                SimTime::ZERO => format!("the driver has set {change}"),
-                t => format!("the driver sets {change}, from {t} on"),
-            })
-            .collect();
-        let _ = start;
+        if !self.board.has_begun() {
+            return;
+        }
+        let told = |change: &Change| match change.setting.start {
+            SimTime::ZERO => format!("the driver has set {change}"),
+            t => format!("the driver sets {change}, from {t} on"),
+        };
+        let news: Vec<String> = self.board.news().iter().map(told).collect();
         news.into_iter().for_each(|notice| self.say(notice));
     }
 

@@ -57,7 +57,9 @@ fn played<T: Send + 'static>(
         Event::Notice(notice) => notices.push(notice),
         _ => {}
     });
-    (outcome, running.unwrap().join().unwrap(), notices)
+    let said = running.unwrap().join();
+    let said = said.unwrap_or_else(|_| panic!("the driver failed: {outcome:?}, {notices:?}"));
+    (outcome, said, notices)
 }
 
 fn job(scene: &str, path: &Path) -> Job {
