@@ -152,7 +152,7 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     (
         "output",
         "send",
-        "false: nothing is sent, and the attitude that the other side tells there is scored (default true)",
+        "false: no readings are sent, and the attitude that the other side tells there is scored (default true)",
     ),
     (
         "output",

@@ -131,6 +131,8 @@ fn what_a_bus_cannot_do_is_refused_with_what_would_be_right() {
         ])
         .contains("has no sensor")
     );
+    assert!(refused(&["timing", "--to", "bus@pty"]).contains("sends no packets"));
+    assert!(with_parts(&["--qgc"]).contains("leave it out"));
     assert!(refused(&["listen", "bus@pty"]).contains("send nothing by themselves"));
 }
 
