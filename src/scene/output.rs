@@ -224,6 +224,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let word = |key, names: &[&'static str]| section.has(key).then(|| section.word(key, names, names[0]));
     let thin = word("thin", &Thin::NAMES).map(Thin::from_name);
     let at_end = word("at_end", &AtEnd::NAMES).map_or(AtEnd::default(), AtEnd::from_name);
+    let (is_mute, chip) = (section.flag("send") == Some(false), chip(section));
     let to = destination(section);
     // `version` is a number in MAVLink and a release of Betaflight.
     let is_betaflight = to.as_ref().is_some_and(|to| to.protocol == Protocol::Betaflight);
@@ -239,8 +240,18 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     if let Some(Controller::Betaflight(release)) = &mut controller {
         *release = betaflight(section);
     }
-    let (is_mute, chip) = (section.flag("send") == Some(false), chip(section).or(to.chip));
-    let wire = wire::Options { layout, version, extras, controller, at_end, thin, claim, mag, is_mute, chip };
+    let wire = wire::Options {
+        layout,
+        version,
+        extras,
+        controller,
+        at_end,
+        thin,
+        claim,
+        mag,
+        is_mute,
+        chip: chip.or(to.chip),
+    };
     for key in Protocol::own_keys().filter(|key| section.has(key)) {
         let owners: Vec<_> = Protocol::owners(key).map(|it| format!("`{}`", it.name())).collect();
         if !Protocol::owners(key).any(|it| it == to.protocol) {
