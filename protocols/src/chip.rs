@@ -28,6 +28,8 @@ pub mod bmi088;
 pub mod bmi160;
 pub mod bmi270;
 mod bosch;
+#[cfg(test)]
+mod checks;
 mod fifo;
 pub mod icm20948;
 pub mod icm42688;
