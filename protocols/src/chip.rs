@@ -188,6 +188,15 @@ pub fn read(registers: &mut dyn Registers, t_ns: u64, out: &mut [u8]) {
     }
 }
 
+/// The samples of gyro and accelerometer that a chip takes: none of a channel that is off.
+fn taken(chip: &impl Chip, samples: &Samples) -> [Option<[i16; 3]>; 2] {
+    [Channel::Gyro, Channel::Accel].map(|channel| {
+        samples
+            .channel(channel)
+            .filter(|_| chip.setting(channel).is_some_and(|setting| setting.rate.is_some()))
+    })
+}
+
 /// The nearest count, clipped to what fits.
 fn temperature(celsius: f64, zero_c: f64, per_c: f64) -> i16 {
     crate::mpu::registers::nearest((celsius - zero_c) * per_c)
