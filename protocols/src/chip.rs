@@ -28,6 +28,8 @@ pub mod bmi088;
 pub mod bmi160;
 pub mod bmi270;
 mod bosch;
+#[cfg(test)]
+mod checks;
 mod fifo;
 pub mod icm20948;
 pub mod icm42688;
@@ -184,6 +186,15 @@ pub fn read(registers: &mut dyn Registers, t_ns: u64, out: &mut [u8]) {
         *byte = registers.read(t_ns, register);
         *registers.pointer() = registers.after(register);
     }
+}
+
+/// The samples of gyro and accelerometer that a chip takes: none of a channel that is off.
+fn taken(chip: &impl Chip, samples: &Samples) -> [Option<[i16; 3]>; 2] {
+    [Channel::Gyro, Channel::Accel].map(|channel| {
+        samples
+            .channel(channel)
+            .filter(|_| chip.setting(channel).is_some_and(|setting| setting.rate.is_some()))
+    })
 }
 
 /// The nearest count, clipped to what fits.

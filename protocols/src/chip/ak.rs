@@ -229,14 +229,7 @@ impl Chip for Ak {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chip::{read, write};
-
-    fn burst<const N: usize>(chip: &mut Ak, register: u8) -> [u8; N] {
-        let mut bytes = [0; N];
-        write(chip, 0, &[register], false);
-        read(chip, 0, &mut bytes);
-        bytes
-    }
+    use crate::chip::checks::{burst, put};
 
     fn mag(counts: [i16; 3]) -> Samples {
         Samples { mag: Some(counts), ..Samples::default() }
@@ -247,7 +240,7 @@ mod tests {
         for (mut chip, mode, st1) in
             [(Ak::ak8963([128; 3]), [0x0a, 0x16], 0x02), (Ak::ak09916(), [0x31, 0x08], 0x10)]
         {
-            write(&mut chip, 0, &mode, false);
+            put(&mut chip, &mode);
             chip.sample(0, &mag([1, 2, 3]));
             assert_eq!(burst::<3>(&mut chip, st1), [1, 1, 0]);
             chip.sample(0, &mag([4, 5, 6]));
@@ -263,7 +256,7 @@ mod tests {
     #[test]
     fn a_driver_that_never_reads_st2_gets_one_sample_for_ever() {
         let mut chip = Ak::ak8963([128; 3]);
-        write(&mut chip, 0, &[0x0a, 0x16], false);
+        put(&mut chip, &[0x0a, 0x16]);
         for count in 1..100 {
             chip.sample(0, &mag([count; 3]));
             assert_eq!(burst::<2>(&mut chip, 0x03), [1, 0]);
@@ -275,23 +268,23 @@ mod tests {
     fn overrun_overflow_and_the_fuse_rom_are_as_in_the_sheet() {
         let mut chip = Ak::ak8963([176, 177, 165]);
         assert_eq!(burst::<3>(&mut chip, 0x10), [0; 3], "not in this mode");
-        write(&mut chip, 0, &[0x0a, 0x0f], false);
+        put(&mut chip, &[0x0a, 0x0f]);
         assert_eq!(burst::<4>(&mut chip, 0x10), [176, 177, 165, 176], "goes round");
         chip.sample(0, &mag([1; 3]));
         assert_eq!(chip.tally(Channel::Mag).made, 0, "measures nothing in that mode");
-        write(&mut chip, 0, &[0x0a, 0x16], false);
+        put(&mut chip, &[0x0a, 0x16]);
         chip.sample(0, &mag([1; 3]));
         chip.sample(0, &mag([20000, -10000, 5000]));
         assert_eq!(burst::<1>(&mut chip, 0x02), [0x03], "ready, and one was skipped");
         assert_eq!(burst::<1>(&mut chip, 0x09), [0x18], "16 bits, overflow");
-        write(&mut chip, 0, &[0x0b, 0x01], false);
+        put(&mut chip, &[0x0b, 0x01]);
         assert_eq!(burst::<1>(&mut chip, 0x0a), [0], "reset");
     }
 
     #[test]
     fn a_single_measurement_ends_in_power_down() {
         let mut chip = Ak::ak8963([128; 3]);
-        write(&mut chip, 0, &[0x0a, 0x01], false);
+        put(&mut chip, &[0x0a, 0x01]);
         chip.sample(0, &mag([4, -4, 7]));
         chip.sample(0, &mag([9; 3]));
         assert_eq!(burst::<7>(&mut chip, 0x03), [1, 0, 0xff, 0xff, 2, 0, 0], "in 14 bits");

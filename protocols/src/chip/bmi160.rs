@@ -19,7 +19,7 @@
 //! ```
 
 use super::bosch::{Queue, Sensors, filter, gyro_offsets, gyro_range, rate, sensor_time, setting, shifted};
-use super::{Channel, Chip, Registers, Samples, Setting, Tally, temperature};
+use super::{Channel, Chip, Registers, Samples, Setting, Tally, taken, temperature};
 
 const CHIP_ID: u8 = 0x00;
 const PMU_STATUS: u8 = 0x03;
@@ -143,19 +143,15 @@ impl Bmi160 {
     fn configure(&mut self, register: u8, value: u8) {
         let is_new = self.of(register) != value;
         self.registers[usize::from(register & 0x7f)] = value;
-        let (queue, what) = (
-            self.queue(),
-            match register {
-                ACC_CONF => 0x01,
-                ACC_RANGE => 0x02,
-                GYR_CONF => 0x04,
-                GYR_RANGE => 0x08,
-                FIFO_DOWNS => 0x05,
-                _ => 0,
-            },
-        );
-        let accel = if queue.accel { what & 0x03 } else { 0 };
-        let what = accel | if queue.gyro { what & 0x0c } else { 0 };
+        let queue = self.queue();
+        let what = queue.changed(match register {
+            ACC_CONF => 0x01,
+            ACC_RANGE => 0x02,
+            GYR_CONF => 0x04,
+            GYR_RANGE => 0x08,
+            FIFO_DOWNS => 0x05,
+            _ => 0,
+        });
         if is_new && queue.headers && what != 0 {
             self.sensors.push_config(&[0x48, what], false);
         }
@@ -163,8 +159,7 @@ impl Bmi160 {
 
     /// Bytes in the FIFO, with the frame that tells how many were skipped (section 2.11.9).
     fn fifo_length(&self) -> usize {
-        let skip = self.queue().headers && self.sensors.frames.skipped() > 0;
-        self.sensors.frames.len() + if skip { 2 } else { 0 }
+        self.sensors.fifo_length(self.queue().headers)
     }
 
     /// FIFO interrupts last as long as their cause; data ready until it is read, or with INT_LATCH until its status is.
@@ -303,12 +298,9 @@ impl Chip for Bmi160 {
 
     fn sample(&mut self, _t_ns: u64, samples: &Samples) {
         self.celsius = samples.temperature_c.unwrap_or(self.celsius);
-        let gyro = samples.gyro.filter(|_| self.gyro_setting().rate.is_some());
-        let accel = samples.accel.filter(|_| self.accel_setting().rate.is_some());
-        let (gyro, accel) = (
-            gyro.map(|counts| self.with_gyro_offset(counts)),
-            accel.map(|counts| self.with_accel_offset(counts)),
-        );
+        let [gyro, accel] = taken(self, samples);
+        let gyro = gyro.map(|counts| self.with_gyro_offset(counts));
+        let accel = accel.map(|counts| self.with_accel_offset(counts));
         self.sensors.take(gyro, accel, self.queue());
     }
 
@@ -327,15 +319,13 @@ impl Chip for Bmi160 {
     }
 
     fn lacks(&self) -> Option<&'static str> {
-        let queue = self.queue();
-        let unfiltered = (queue.gyro && queue.downs & 0x08 == 0) || (queue.accel && queue.downs & 0x80 == 0);
         if self.of(SELF_TEST) != 0 {
             Some("self-test (SELF_TEST): nothing deflects the readings")
         } else if self.has_compensated {
             Some("fast offset compensation (command 03): it ends at once and changes no offset")
         } else if self.undersamples() {
             Some("undersampling (ACC_CONF bit 7): it takes single samples, not their average")
-        } else if unfiltered {
+        } else if self.queue().is_unfiltered() {
             Some("unfiltered data in the FIFO (FIFO_DOWNS bits 3 and 7): it holds what the registers hold")
         } else if self.power & 0x03 != 0 {
             Some("the secondary interface: no magnetometer is attached")

@@ -24,7 +24,7 @@
 mod upload;
 
 use super::bosch::{Queue, Sensors, filter, gyro_offsets, gyro_range, rate, sensor_time, setting, shifted};
-use super::{Channel, Chip, Registers, Samples, Setting, Tally, temperature};
+use super::{Channel, Chip, Registers, Samples, Setting, Tally, taken, temperature};
 use upload::{Image, Upload};
 
 const CHIP_ID: u8 = 0x00;
@@ -172,19 +172,15 @@ impl Bmi270 {
     fn configure(&mut self, t_ns: u64, register: u8, value: u8) {
         let is_new = self.of(register) != value;
         self.registers[usize::from(register & 0x7f)] = value;
-        let (queue, what) = (
-            self.queue(),
-            match register {
-                ACC_CONF => 0x01,
-                ACC_RANGE => 0x02,
-                GYR_CONF => 0x04,
-                GYR_RANGE => 0x08,
-                FIFO_DOWNS => 0x05,
-                _ => 0,
-            },
-        );
-        let accel = if queue.accel { what & 0x03 } else { 0 };
-        let what = accel | if queue.gyro { what & 0x0c } else { 0 };
+        let queue = self.queue();
+        let what = queue.changed(match register {
+            ACC_CONF => 0x01,
+            ACC_RANGE => 0x02,
+            GYR_CONF => 0x04,
+            GYR_RANGE => 0x08,
+            FIFO_DOWNS => 0x05,
+            _ => 0,
+        });
         if is_new && queue.headers && what != 0 {
             let [low, middle, high] = sensor_time(t_ns);
             self.sensors.push_config(&[0x48, what, low, middle, high], queue.stops);
@@ -193,8 +189,7 @@ impl Bmi270 {
 
     /// Bytes in the FIFO, with the frame that tells how many were skipped (assumed: as in BST-BMI160-DS000 section 2.11.9).
     fn fifo_length(&self) -> usize {
-        let skip = self.queue().headers && self.sensors.frames.skipped() > 0;
-        self.sensors.frames.len() + if skip { 2 } else { 0 }
+        self.sensors.fifo_length(self.queue().headers)
     }
 
     /// FIFO bits of INT_STATUS_1, which last as long as their cause.
@@ -337,12 +332,9 @@ impl Chip for Bmi270 {
 
     fn sample(&mut self, _t_ns: u64, samples: &Samples) {
         self.celsius = samples.temperature_c.unwrap_or(self.celsius);
-        let gyro = samples.gyro.filter(|_| self.gyro_setting().rate.is_some());
-        let accel = samples.accel.filter(|_| self.accel_setting().rate.is_some());
-        let (gyro, accel) = (
-            gyro.map(|counts| self.with_gyro_offset(counts)),
-            accel.map(|counts| self.with_accel_offset(counts)),
-        );
+        let [gyro, accel] = taken(self, samples);
+        let gyro = gyro.map(|counts| self.with_gyro_offset(counts));
+        let accel = accel.map(|counts| self.with_accel_offset(counts));
         self.sensors.take(gyro, accel, self.queue());
     }
 
@@ -361,15 +353,13 @@ impl Chip for Bmi270 {
     }
 
     fn lacks(&self) -> Option<&'static str> {
-        let queue = self.queue();
-        let unfiltered = (queue.gyro && queue.downs & 0x08 == 0) || (queue.accel && queue.downs & 0x80 == 0);
         if self.of(ACC_SELF_TEST) & 0x01 != 0 {
             Some("self-test (ACC_SELF_TEST): nothing deflects the readings")
         } else if self.of(OFFSET_CONF) & 0x80 != 0 {
             Some("gain compensation (register 77 bit 7): the gyro's readings are not scaled")
         } else if self.is_on(0x04) && self.averages() {
             Some("averages (ACC_CONF bit 7 clear): the accelerometer takes single samples")
-        } else if unfiltered {
+        } else if self.queue().is_unfiltered() {
             Some("unfiltered data in the FIFO (FIFO_DOWNS bits 3 and 7): it holds what the registers hold")
         } else if self.of(PWR_CTRL) & 0x01 != 0 {
             Some("the auxiliary interface: no sensor is attached")

@@ -28,6 +28,19 @@ pub(super) struct Queue {
     pub downs: u8,
 }
 
+impl Queue {
+    /// Of the bits of FIFO_INPUT_CONFIG those whose sensor is in the FIFO: 1:0 are the accelerometer's, 3:2 the gyro's.
+    pub fn changed(self, bits: u8) -> u8 {
+        let accel = if self.accel { bits & 0x03 } else { 0 };
+        accel | if self.gyro { bits & 0x0c } else { 0 }
+    }
+
+    /// Whether a sensor's samples enter before its filter: FIFO_DOWNS bits 3 and 7 are clear.
+    pub fn is_unfiltered(self) -> bool {
+        (self.gyro && self.downs & 0x08 == 0) || (self.accel && self.downs & 0x80 == 0)
+    }
+}
+
 /// The newest sample of both sensors, and the FIFO.
 #[derive(Clone, Debug)]
 pub(super) struct Sensors<const N: usize> {
@@ -105,6 +118,12 @@ impl<const N: usize> Sensors<N> {
         let lost = self.frames.push(&frame[..len], channels, queue.stops);
         self.gyro.tally.overflowed += lost[Channel::Gyro as usize];
         self.accel.tally.overflowed += lost[Channel::Accel as usize];
+    }
+
+    /// Bytes in the FIFO, with the frame that tells how many were skipped.
+    pub fn fifo_length(&self, headers: bool) -> usize {
+        let skip = headers && self.frames.skipped() > 0;
+        self.frames.len() + if skip { 2 } else { 0 }
     }
 
     /// Puts a frame there which says what changed (FIFO_INPUT_CONFIG).

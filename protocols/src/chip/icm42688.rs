@@ -20,7 +20,7 @@
 mod packet;
 mod rates;
 
-use super::{Channel, Chip, Fifo, Latest, Registers, Samples, Setting, Tally, shifted, temperature};
+use super::{Channel, Chip, Fifo, Latest, Registers, Samples, Setting, Tally, shifted, taken, temperature};
 
 /// A register: its bank and its address there.
 type At = (u8, u8);
@@ -338,8 +338,7 @@ impl Chip for Icm42688 {
     }
 
     fn sample(&mut self, t_ns: u64, samples: &Samples) {
-        let gyro = samples.gyro.filter(|_| self.gyro_setting().rate.is_some());
-        let accel = samples.accel.filter(|_| self.accel_setting().rate.is_some());
+        let [gyro, accel] = taken(self, samples);
         if self.of(PWR_MGMT0) & 0x20 == 0 {
             self.celsius = samples.temperature_c.unwrap_or(self.celsius); // not TEMP_DIS
         }

@@ -21,7 +21,7 @@
 mod fifo_words;
 mod settings;
 
-use super::{Channel, Chip, Latest, Registers, Samples, Setting, Tally, temperature};
+use super::{Channel, Chip, Latest, Registers, Samples, Setting, Tally, taken, temperature};
 use fifo_words::Words;
 
 const FUNC_CFG_ACCESS: u8 = 0x01;
@@ -284,8 +284,7 @@ impl Chip for Lsm6dso {
 
     fn sample(&mut self, t_ns: u64, samples: &Samples) {
         self.celsius = samples.temperature_c.unwrap_or(self.celsius);
-        let gyro = samples.gyro.filter(|_| self.gyro_setting().rate.is_some());
-        let accel = samples.accel.filter(|_| self.accel_setting().rate.is_some());
+        let [gyro, accel] = taken(self, samples);
         let accel = accel.map(|counts| self.with_offset(counts));
         if gyro.is_none() && accel.is_none() {
             return;

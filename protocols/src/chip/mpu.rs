@@ -342,15 +342,16 @@ impl Chip for Mpu {
         }
         let [gyro_on, accel_on] = [self.gyro_setting(), self.accel_setting()].map(|it| it.rate.is_some());
         let (gyro, accel) = (samples.gyro.filter(|_| gyro_on), samples.accel.filter(|_| accel_on));
+        let is_frame = gyro.is_some() || (accel.is_some() && !gyro_on);
         if let Some(counts) = gyro {
             self.gyro.put(self.with_gyro_offset(counts), self.fifo_takes(Channel::Gyro));
         }
         if let Some(counts) = accel {
-            self.accel.put(self.with_accel_offset(counts), self.fifo_takes(Channel::Accel));
+            self.accel.put(self.with_accel_offset(counts), is_frame && self.fifo_takes(Channel::Accel));
         }
-        if gyro.is_some() || (accel.is_some() && !gyro_on) {
+        if is_frame {
             self.run_slaves(t_ns);
-            self.push_frame(accel.is_some());
+            self.push_frame(gyro.is_some(), accel.is_some());
             self.status |= DATA_READY;
         }
     }

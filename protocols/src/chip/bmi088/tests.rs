@@ -1,45 +1,25 @@
 extern crate std;
 
 use super::*;
-use crate::chip::{Wired, read, write};
+use crate::chip::Wired;
+use crate::chip::checks::{self, Backlog, Data, Port, kth, rates};
 use proptest::prelude::*;
-use std::collections::VecDeque;
 
 const ACCEL: u8 = 0x18;
 const GYRO: u8 = 0x68;
 
 fn put(chip: &mut Bmi088, address: u8, bytes: &[u8]) {
-    if let Some(registers) = chip.at(address) {
-        write(registers, 0, bytes, false);
-    }
+    checks::put(chip.at(address).expect("one of its addresses"), bytes);
 }
 
 fn burst<const N: usize>(chip: &mut Bmi088, address: u8, register: u8) -> [u8; N] {
-    let mut bytes = [0; N];
-    if let Some(registers) = chip.at(address) {
-        write(registers, 0, &[register], false);
-        read(registers, 0, &mut bytes);
-    }
-    bytes
-}
-
-fn both(gyro: [i16; 3], accel: [i16; 3]) -> Samples {
-    Samples { gyro: Some(gyro), accel: Some(accel), ..Samples::default() }
-}
-
-/// A sample whose every component is `k`.
-fn kth(k: i16) -> Samples {
-    both([k; 3], [k; 3])
+    checks::burst(chip.at(address).expect("one of its addresses"), register)
 }
 
 fn awake() -> Bmi088 {
     let mut chip = Bmi088::new(ACCEL, GYRO);
     put(&mut chip, ACCEL, &[0x7c, 0x00, 0x04]);
     chip
-}
-
-fn rates(chip: &Bmi088) -> [Option<(u32, u32)>; 2] {
-    [Channel::Gyro, Channel::Accel].map(|channel| chip.setting(channel).and_then(|setting| setting.rate))
 }
 
 #[test]
@@ -141,12 +121,8 @@ fn data_of_the_accelerometer_is_ready_until_it_is_read() {
 fn data_of_the_gyro_is_ready_for_280_us() {
     let mut chip = awake();
     let status = |chip: &mut Bmi088, t_ns| {
-        let mut byte = [0];
-        if let Some(registers) = chip.at(GYRO) {
-            write(registers, t_ns, &[0x0a], false);
-            read(registers, t_ns, &mut byte);
-        }
-        byte[0]
+        let [status] = checks::burst_at(chip.at(GYRO).expect("the gyro"), t_ns, 0x0a);
+        status
     };
     chip.sample(1_000, &kth(1));
     assert_eq!((status(&mut chip, 2_000), chip.interrupt()), (0, false), "not enabled");
@@ -257,81 +233,38 @@ fn self_tests_end_well_and_what_is_not_modelled_is_told() {
 }
 
 proptest! {
-    /// Whatever is written and read, nothing panics, and every sample is accounted for.
     #[test]
-    fn every_sample_is_accounted_for(
-        steps in prop::collection::vec((0u8..6, any::<bool>(), any::<u8>(), any::<[u8; 3]>()), 1..200),
-    ) {
+    fn every_sample_is_accounted_for(steps in checks::steps()) {
         let mut chip = awake();
         put(&mut chip, ACCEL, &[0x49, 0x50]);
         put(&mut chip, GYRO, &[0x3e, 0x80]);
-        for (k, (what, is_gyro, register, bytes)) in steps.into_iter().enumerate() {
-            let address = if is_gyro { GYRO } else { ACCEL };
-            match what {
-                0 => put(&mut chip, address, &[register, bytes[0], bytes[1], bytes[2]]),
-                1 => { burst::<30>(&mut chip, address, register); }
-                2 => { burst::<30>(&mut chip, address, if is_gyro { 0x3f } else { 0x26 }); }
-                _ => chip.sample(k as u64, &kth(k as i16)),
-            }
-            for channel in Channel::ALL {
-                let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-                prop_assert!(read + missed + overflowed <= made, "{:?}", chip.tally(channel));
-            }
-        }
-        put(&mut chip, ACCEL, &[0x7e, 0xb6]);
-        put(&mut chip, GYRO, &[0x14, 0xb6]);
-        for channel in Channel::ALL {
-            let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-            prop_assert_eq!(read + missed + overflowed, made);
-        }
+        let accel = Port { address: ACCEL, fifo: (0x26, 30), reset: &[&[0x7e, 0xb6]] };
+        let gyro = Port { address: GYRO, fifo: (0x3f, 30), reset: &[&[0x14, 0xb6]] };
+        checks::every_sample_is_accounted_for(&mut chip, &[accel, gyro], &steps)?;
     }
 
-    /// Against a simple model: a burst at any time is the newest sample, whole.
     #[test]
-    fn bursts_at_any_pace_are_whole_samples_in_order(reads in prop::collection::vec(0u8..5, 1..100)) {
+    fn bursts_at_any_pace_are_whole_samples_in_order(paces in prop::collection::vec(0u8..5, 1..100)) {
         let mut chip = awake();
-        let (mut k, mut fresh, mut expected) = (0i16, false, Tally::default());
-        for samples in reads {
-            for _ in 0..samples {
-                k += 1;
-                expected.made += 1;
-                expected.missed += u64::from(fresh);
-                fresh = true;
-                chip.sample(0, &both([k, -k, k], [-k, k, -k]));
-            }
-            let counts = [k, -k, k, -k, k, -k].map(i16::to_le_bytes).concat();
-            prop_assert_eq!(&burst::<6>(&mut chip, GYRO, 0x02)[..], &counts[..6]);
-            prop_assert_eq!(&burst::<6>(&mut chip, ACCEL, 0x12)[..], &counts[6..]);
-            if k > 0 {
-                expected.read += u64::from(fresh);
-                expected.again += u64::from(!fresh);
-            }
-            fresh = false;
-            prop_assert_eq!(chip.tally(Channel::Gyro), expected);
-            prop_assert_eq!(chip.tally(Channel::Accel), expected);
-        }
+        let [gyro, accel] = [(GYRO, 0x02, &[(Channel::Gyro, 0)]), (ACCEL, 0x12, &[(Channel::Accel, 0)])].map(
+            |(address, register, parts)| Data { address, register, parts, order: i16::to_le_bytes, at_first: 0 },
+        );
+        checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[gyro, accel], &paces)?;
     }
 
-    /// Against a queue of frames: what leaves the gyro's FIFO is what entered it, oldest first.
     #[test]
-    fn the_gyros_fifo_keeps_the_newest_frames_in_order(reads in prop::collection::vec((0usize..60, 0usize..60), 1..20)) {
+    fn the_gyros_fifo_keeps_the_newest_frames_in_order(paces in prop::collection::vec((0usize..60, 0usize..60), 1..20)) {
         let mut chip = awake();
         put(&mut chip, GYRO, &[0x3e, 0x80]);
-        let (mut k, mut model) = (0i16, VecDeque::new());
-        for (samples, frames) in reads {
-            for _ in 0..samples {
-                k += 1;
-                model.push_back(k);
-                chip.sample(0, &kth(k));
-            }
-            while model.len() > 99 {
-                model.pop_front();
-            }
-            prop_assert_eq!(burst::<1>(&mut chip, GYRO, 0x0e)[0] & 0x7f, model.len() as u8);
-            for _ in 0..frames {
-                let [low, high, ..] = burst::<6>(&mut chip, GYRO, 0x3f);
-                prop_assert_eq!(i16::from_le_bytes([low, high]), model.pop_front().unwrap_or(0));
-            }
-        }
+        let fifo = Backlog {
+            room: 99,
+            waiting: |chip| usize::from(burst::<1>(chip, GYRO, 0x0e)[0] & 0x7f),
+            next: |chip| {
+                let [low, high, ..] = burst::<6>(chip, GYRO, 0x3f);
+                i16::from_le_bytes([low, high])
+            },
+            empty: 0,
+        };
+        checks::the_fifo_keeps_the_newest_frames_in_order(&mut chip, &fifo, &paces)?;
     }
 }

@@ -1,29 +1,9 @@
 extern crate std;
 
 use super::*;
+use crate::chip::checks::{self, Backlog, Data, Port, both, burst, get, kth, put, rates, set};
 use crate::chip::{Wired, read, write};
 use proptest::prelude::*;
-use std::collections::VecDeque;
-
-fn put(chip: &mut Bmi160, bytes: &[u8]) {
-    write(chip, 0, bytes, false);
-}
-
-fn burst<const N: usize>(chip: &mut Bmi160, register: u8) -> [u8; N] {
-    let mut bytes = [0; N];
-    write(chip, 0, &[register], false);
-    read(chip, 0, &mut bytes);
-    bytes
-}
-
-fn both(gyro: [i16; 3], accel: [i16; 3]) -> Samples {
-    Samples { gyro: Some(gyro), accel: Some(accel), ..Samples::default() }
-}
-
-/// A sample whose every component is `k`.
-fn kth(k: i16) -> Samples {
-    both([k; 3], [k; 3])
-}
 
 /// Awake at ±2000 °/s and ±2 g.
 fn awake() -> Bmi160 {
@@ -31,10 +11,6 @@ fn awake() -> Bmi160 {
     put(&mut chip, &[0x7e, 0x11]);
     put(&mut chip, &[0x7e, 0x15]);
     chip
-}
-
-fn set(rate: (u32, u32), range: u8, filter: Option<&'static str>) -> Setting {
-    Setting { rate: Some(rate), range, filter }
 }
 
 #[test]
@@ -88,8 +64,7 @@ fn rates_ranges_and_filters_are_those_of_the_register_map() {
     for reserved in [[0x40, 0x24, 0x03, 0x25], [0x40, 0x2d, 0x03, 0x2e], [0x40, 0x20, 0x03, 0x20]] {
         let mut chip = awake();
         put(&mut chip, &reserved);
-        let rates = [Channel::Gyro, Channel::Accel].map(|it| chip.setting(it).and_then(|set| set.rate));
-        assert_eq!(rates, [None; 2], "{reserved:x?}");
+        assert_eq!(rates(&chip), [None; 2], "{reserved:x?}");
     }
 }
 
@@ -200,101 +175,54 @@ fn time_follows_the_last_frame_and_a_new_configuration_precedes_its_first() {
 fn it_answers_what_zephyrs_driver_sends() {
     let mut chip = Bmi160::new(0x69);
     let mut bus = Wired { t_ns: 0, chips: &mut [&mut chip] };
-    let get = |bus: &mut Wired, register| {
-        let mut byte = [0];
-        assert!(bus.write(0x69, &[register], false) && bus.read(0x69, &mut byte));
-        byte[0]
-    };
     assert!(bus.write(0x69, &[0x7e], false) && bus.write(0x69, &[0xb6], true), "one write in two messages");
-    assert_eq!((get(&mut bus, 0x7f), get(&mut bus, 0x00)), (0, 0xd1));
+    assert_eq!((get(&mut bus, 0x69, 0x7f), get(&mut bus, 0x69, 0x00)), (0, 0xd1));
     for (command, mask, value) in [(0x18, 0x03, 0x00), (0x11, 0x30, 0x10), (0x15, 0x0c, 0x04)] {
         bus.write(0x69, &[0x7e, command], false);
-        assert_eq!(get(&mut bus, 0x03) & mask, value);
+        assert_eq!(get(&mut bus, 0x69, 0x03) & mask, value);
     }
     for write in [[0x40, 0x28], [0x41, 0x03], [0x43, 0x00]] {
         bus.write(0x69, &write, false);
     }
-    assert_eq!(get(&mut bus, 0x1b) & 0xc0, 0);
+    assert_eq!(get(&mut bus, 0x69, 0x1b) & 0xc0, 0);
     chip.sample(0, &both([1, 2, 3], [-1, -2, 16384]));
     let mut bus = Wired { t_ns: 0, chips: &mut [&mut chip] };
-    assert_eq!(get(&mut bus, 0x1b) & 0xc0, 0xc0);
+    assert_eq!(get(&mut bus, 0x69, 0x1b) & 0xc0, 0xc0);
     let mut fetched = [0; 12];
     assert!(bus.write(0x69, &[0x0c], false) && bus.read(0x69, &mut fetched));
     assert_eq!(fetched, [1, 0, 2, 0, 3, 0, 0xff, 0xff, 0xfe, 0xff, 0, 0x40]);
 }
 
 proptest! {
-    /// Whatever is written and read, nothing panics, and every sample is accounted for.
     #[test]
-    fn every_sample_is_accounted_for(
-        steps in prop::collection::vec((0u8..5, any::<u8>(), any::<[u8; 3]>()), 1..200),
-    ) {
+    fn every_sample_is_accounted_for(steps in checks::steps()) {
         let mut chip = awake();
         put(&mut chip, &[0x47, 0xd2]);
-        for (k, (what, register, bytes)) in steps.into_iter().enumerate() {
-            match what {
-                0 => write(&mut chip, k as u64, &[register, bytes[0], bytes[1], bytes[2]], bytes[0] & 1 == 1),
-                1 => { burst::<30>(&mut chip, register); }
-                2 => { burst::<30>(&mut chip, 0x24); }
-                _ => chip.sample(k as u64, &kth(k as i16)),
-            }
-            for channel in Channel::ALL {
-                let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-                prop_assert!(read + missed + overflowed <= made, "{:?}", chip.tally(channel));
-            }
-        }
-        // What is left waits in the FIFO or in a register.
-        put(&mut chip, &[0x7e, 0xb6]);
-        for channel in Channel::ALL {
-            let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-            prop_assert_eq!(read + missed + overflowed, made);
-        }
+        let port = Port { address: 0x69, fifo: (0x24, 30), reset: &[&[0x7e, 0xb6]] };
+        checks::every_sample_is_accounted_for(&mut chip, &[port], &steps)?;
     }
 
-    /// Against a simple model: a burst at any time is the newest sample, whole.
     #[test]
-    fn bursts_at_any_pace_are_whole_samples_in_order(reads in prop::collection::vec(0u8..5, 1..100)) {
+    fn bursts_at_any_pace_are_whole_samples_in_order(paces in prop::collection::vec(0u8..5, 1..100)) {
         let mut chip = awake();
-        let (mut k, mut fresh, mut expected) = (0i16, false, Tally::default());
-        for samples in reads {
-            for _ in 0..samples {
-                k += 1;
-                expected.made += 1;
-                expected.missed += u64::from(fresh);
-                fresh = true;
-                chip.sample(0, &both([k, -k, k], [-k, k, -k]));
-            }
-            let counts = [k, -k, k, -k, k, -k].map(i16::to_le_bytes).concat();
-            prop_assert_eq!(&burst::<12>(&mut chip, 0x0c)[..], counts);
-            if k > 0 {
-                expected.read += u64::from(fresh);
-                expected.again += u64::from(!fresh);
-            }
-            fresh = false;
-            prop_assert_eq!(chip.tally(Channel::Gyro), expected);
-        }
+        let parts = [(Channel::Gyro, 0), (Channel::Accel, 6)];
+        let data = Data { address: 0x69, register: 0x0c, parts: &parts, order: i16::to_le_bytes, at_first: 0 };
+        checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[data], &paces)?;
     }
 
-    /// Against a queue of frames: what leaves the FIFO is what entered it, oldest first.
     #[test]
-    fn the_fifo_keeps_the_newest_frames_in_order(reads in prop::collection::vec((0usize..60, 0usize..90), 1..20)) {
+    fn the_fifo_keeps_the_newest_frames_in_order(paces in prop::collection::vec((0usize..60, 0usize..90), 1..20)) {
         let mut chip = awake();
         put(&mut chip, &[0x47, 0x80]);
-        let (mut k, mut model) = (0i16, VecDeque::new());
-        for (samples, frames) in reads {
-            for _ in 0..samples {
-                k += 1;
-                model.push_back(k);
-                chip.sample(0, &kth(k));
-            }
-            while model.len() > 1024 / 6 {
-                model.pop_front();
-            }
-            prop_assert_eq!(burst(&mut chip, 0x22), (model.len() as u16 * 6).to_le_bytes());
-            for _ in 0..frames {
-                let [low, high, ..] = burst::<6>(&mut chip, 0x24);
-                prop_assert_eq!(i16::from_le_bytes([low, high]), model.pop_front().unwrap_or(0x0080));
-            }
-        }
+        let fifo = Backlog {
+            room: 1024 / 6,
+            waiting: |chip| usize::from(u16::from_le_bytes(burst(chip, 0x22))) / 6,
+            next: |chip| {
+                let [low, high, ..] = burst::<6>(chip, 0x24);
+                i16::from_le_bytes([low, high])
+            },
+            empty: 0x0080,
+        };
+        checks::the_fifo_keeps_the_newest_frames_in_order(&mut chip, &fifo, &paces)?;
     }
 }

@@ -1,9 +1,9 @@
 extern crate std;
 
 use super::*;
-use crate::chip::{Wired, read, write};
+use crate::chip::checks::{self, Backlog, Data, Port, both, get, kth, rates, set};
+use crate::chip::{Wired, write};
 use proptest::prelude::*;
-use std::collections::VecDeque;
 
 const READY_NS: u64 = 20_000_000;
 
@@ -12,19 +12,7 @@ fn put(chip: &mut Bmi270, bytes: &[u8]) {
 }
 
 fn burst<const N: usize>(chip: &mut Bmi270, register: u8) -> [u8; N] {
-    let mut bytes = [0; N];
-    write(chip, READY_NS, &[register], false);
-    read(chip, READY_NS, &mut bytes);
-    bytes
-}
-
-fn both(gyro: [i16; 3], accel: [i16; 3]) -> Samples {
-    Samples { gyro: Some(gyro), accel: Some(accel), ..Samples::default() }
-}
-
-/// A sample whose every component is `k`.
-fn kth(k: i16) -> Samples {
-    both([k; 3], [k; 3])
+    checks::burst_at(chip, READY_NS, register)
 }
 
 /// Uploads `len` bytes in bursts of `step`, each at its own address, at time 0.
@@ -44,14 +32,6 @@ fn awake() -> Bmi270 {
     upload(&mut chip, 8192, 8192);
     put(&mut chip, &[0x7c, 0x00, 0x0e]);
     chip
-}
-
-fn set(rate: (u32, u32), range: u8, filter: Option<&'static str>) -> Setting {
-    Setting { rate: Some(rate), range, filter }
-}
-
-fn rates(chip: &Bmi270) -> [Option<(u32, u32)>; 2] {
-    [Channel::Gyro, Channel::Accel].map(|channel| chip.setting(channel).and_then(|setting| setting.rate))
 }
 
 #[test]
@@ -82,9 +62,7 @@ fn it_measures_nothing_before_its_whole_program_is_there() {
         let mut chip = Bmi270::new(0x68);
         put(&mut chip, &[0x7d, 0x0e]);
         upload(&mut chip, len, step);
-        let mut status = [0];
-        write(&mut chip, READY_NS - 1, &[0x21], false);
-        read(&mut chip, READY_NS - 1, &mut status);
+        let status = checks::burst_at(&mut chip, READY_NS - 1, 0x21);
         assert_eq!(status, [if message == 1 { 0 } else { 2 }], "{len} bytes, not yet");
         assert_eq!(burst(&mut chip, 0x21), [message], "{len} bytes in bursts of {step}");
         assert_eq!(rates(&chip).map(|rate| rate.is_some()), [message == 1; 2]);
@@ -236,16 +214,11 @@ fn the_makers_own_driver_finds_what_it_expects() {
     // BMI270_SensorAPI: soft reset, power saving off, INIT_CTRL read and written, bursts of 46 bytes, 20 ms.
     let mut chip = Bmi270::new(0x68);
     let mut bus = Wired { t_ns: 0, chips: &mut [&mut chip] };
-    let get = |bus: &mut Wired, register| {
-        let mut byte = [0];
-        assert!(bus.write(0x68, &[register], false) && bus.read(0x68, &mut byte));
-        byte[0]
-    };
-    assert_eq!(get(&mut bus, 0x00), 0x24);
+    assert_eq!(get(&mut bus, 0x68, 0x00), 0x24);
     bus.write(0x68, &[0x7e, 0xb6], false);
-    let power = get(&mut bus, 0x7c) & !0x01;
+    let power = get(&mut bus, 0x68, 0x7c) & !0x01;
     bus.write(0x68, &[0x7c, power], false);
-    let control = get(&mut bus, 0x59) & !0x01;
+    let control = get(&mut bus, 0x68, 0x59) & !0x01;
     bus.write(0x68, &[0x59, control], false);
     let mut at = 0u16;
     while at < 8192 {
@@ -254,83 +227,42 @@ fn the_makers_own_driver_finds_what_it_expects() {
         bus.write(0x68, &[0x5e; 47][..=step], false);
         at += step as u16;
     }
-    let control = get(&mut bus, 0x59) | 0x01;
+    let control = get(&mut bus, 0x68, 0x59) | 0x01;
     bus.write(0x68, &[0x59, control], false);
     bus.t_ns = 20_000_000;
-    assert_eq!(get(&mut bus, 0x21) & 0x0f, 0x01);
+    assert_eq!(get(&mut bus, 0x68, 0x21) & 0x0f, 0x01);
 }
 
 proptest! {
-    /// Whatever is written and read, nothing panics, and every sample is accounted for.
     #[test]
-    fn every_sample_is_accounted_for(
-        steps in prop::collection::vec((0u8..5, any::<u8>(), any::<[u8; 3]>()), 1..200),
-    ) {
+    fn every_sample_is_accounted_for(steps in checks::steps()) {
         let mut chip = awake();
         put(&mut chip, &[0x49, 0xd0]);
-        for (k, (what, register, bytes)) in steps.into_iter().enumerate() {
-            match what {
-                0 => write(&mut chip, k as u64, &[register, bytes[0], bytes[1], bytes[2]], bytes[0] & 1 == 1),
-                1 => { burst::<30>(&mut chip, register); }
-                2 => { burst::<30>(&mut chip, 0x26); }
-                _ => chip.sample(k as u64, &kth(k as i16)),
-            }
-            for channel in Channel::ALL {
-                let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-                prop_assert!(read + missed + overflowed <= made, "{:?}", chip.tally(channel));
-            }
-        }
-        put(&mut chip, &[0x7e, 0xb6]);
-        for channel in Channel::ALL {
-            let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-            prop_assert_eq!(read + missed + overflowed, made);
-        }
+        let port = Port { address: 0x68, fifo: (0x26, 30), reset: &[&[0x7e, 0xb6]] };
+        checks::every_sample_is_accounted_for(&mut chip, &[port], &steps)?;
     }
 
-    /// Against a simple model: a burst at any time is the newest sample, whole.
     #[test]
-    fn bursts_at_any_pace_are_whole_samples_in_order(reads in prop::collection::vec(0u8..5, 1..100)) {
+    fn bursts_at_any_pace_are_whole_samples_in_order(paces in prop::collection::vec(0u8..5, 1..100)) {
         let mut chip = awake();
-        let (mut k, mut fresh, mut expected) = (0i16, false, Tally::default());
-        for samples in reads {
-            for _ in 0..samples {
-                k += 1;
-                expected.made += 1;
-                expected.missed += u64::from(fresh);
-                fresh = true;
-                chip.sample(0, &both([k, -k, k], [-k, k, -k]));
-            }
-            let counts = [-k, k, -k, k, -k, k].map(i16::to_le_bytes).concat();
-            prop_assert_eq!(&burst::<12>(&mut chip, 0x0c)[..], counts);
-            if k > 0 {
-                expected.read += u64::from(fresh);
-                expected.again += u64::from(!fresh);
-            }
-            fresh = false;
-            prop_assert_eq!(chip.tally(Channel::Gyro), expected);
-        }
+        let parts = [(Channel::Accel, 0), (Channel::Gyro, 6)];
+        let data = Data { address: 0x68, register: 0x0c, parts: &parts, order: i16::to_le_bytes, at_first: 0 };
+        checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[data], &paces)?;
     }
 
-    /// Against a queue of frames: what leaves the FIFO is what entered it, oldest first.
     #[test]
-    fn the_fifo_keeps_the_newest_frames_in_order(reads in prop::collection::vec((0usize..200, 0usize..200), 1..20)) {
+    fn the_fifo_keeps_the_newest_frames_in_order(paces in prop::collection::vec((0usize..200, 0usize..200), 1..20)) {
         let mut chip = awake();
         put(&mut chip, &[0x49, 0x40]);
-        let (mut k, mut model) = (0i16, VecDeque::new());
-        for (samples, frames) in reads {
-            for _ in 0..samples {
-                k += 1;
-                model.push_back(k);
-                chip.sample(0, &kth(k));
-            }
-            while model.len() > 2048 / 6 {
-                model.pop_front();
-            }
-            prop_assert_eq!(burst(&mut chip, 0x24), (model.len() as u16 * 6).to_le_bytes());
-            for _ in 0..frames {
-                let [low, high, ..] = burst::<6>(&mut chip, 0x26);
-                prop_assert_eq!(i16::from_le_bytes([low, high]), model.pop_front().unwrap_or(i16::MIN));
-            }
-        }
+        let fifo = Backlog {
+            room: 2048 / 6,
+            waiting: |chip| usize::from(u16::from_le_bytes(burst(chip, 0x24))) / 6,
+            next: |chip| {
+                let [low, high, ..] = burst::<6>(chip, 0x26);
+                i16::from_le_bytes([low, high])
+            },
+            empty: i16::MIN,
+        };
+        checks::the_fifo_keeps_the_newest_frames_in_order(&mut chip, &fifo, &paces)?;
     }
 }

@@ -1,10 +1,7 @@
 use super::*;
-use crate::chip::{read, write};
+use crate::chip::checks::{self, Data, Port, both, burst, kth, put, set, words};
+use crate::chip::write;
 use proptest::prelude::*;
-
-fn put(chip: &mut Icm20948, bytes: &[u8]) {
-    write(chip, 0, bytes, false);
-}
 
 /// Writes to a bank and goes back to bank 0.
 fn put_in(chip: &mut Icm20948, bank: u8, bytes: &[u8]) {
@@ -13,35 +10,14 @@ fn put_in(chip: &mut Icm20948, bank: u8, bytes: &[u8]) {
     put(chip, &[0x7f, 0]);
 }
 
-fn burst<const N: usize>(chip: &mut Icm20948, register: u8) -> [u8; N] {
-    let mut bytes = [0; N];
-    write(chip, 0, &[register], false);
-    read(chip, 0, &mut bytes);
-    bytes
-}
-
 fn awake() -> Icm20948 {
     let mut chip = Icm20948::new(0x69);
     put(&mut chip, &[0x06, 0x01]);
     chip
 }
 
-fn both(gyro: [i16; 3], accel: [i16; 3]) -> Samples {
-    Samples { gyro: Some(gyro), accel: Some(accel), ..Samples::default() }
-}
-
-/// A sample whose every component is `k`.
-fn kth(k: i16) -> Samples {
-    both([k; 3], [k; 3])
-}
-
 fn mag(counts: [i16; 3]) -> Samples {
     Samples { mag: Some(counts), ..kth(0) }
-}
-
-fn words(counts: [i16; 3]) -> [u8; 6] {
-    let [x, y, z] = counts.map(i16::to_be_bytes);
-    [x[0], x[1], y[0], y[1], z[0], z[1]]
 }
 
 #[test]
@@ -109,12 +85,16 @@ fn asleep_disabled_or_without_a_clock_it_takes_no_sample() {
 
 #[test]
 fn rates_ranges_and_filters_are_those_of_the_register_map() {
-    let set = |hz, by, range, filter| Setting { rate: Some((hz, by)), range, filter: Some(filter) };
     let rows: [([u8; 2], [u8; 3], Setting, Setting); 4] = [
-        ([0, 0x01], [0, 0, 0x01], set(1125, 1, 0, "DLPF 0"), set(1125, 1, 0, "DLPF 0")),
-        ([255, 0x3f], [0x0f, 0xff, 0x3f], set(1125, 256, 3, "DLPF 7"), set(1125, 4096, 3, "DLPF 7")),
-        ([4, 0x1b], [0xf0, 21, 0x2d], set(1125, 5, 1, "DLPF 3"), set(1125, 22, 2, "DLPF 5")),
-        ([4, 0x04], [0, 9, 0x02], set(9000, 1, 2, "bypass"), set(4500, 1, 1, "bypass")),
+        ([0, 0x01], [0, 0, 0x01], set((1125, 1), 0, Some("DLPF 0")), set((1125, 1), 0, Some("DLPF 0"))),
+        (
+            [255, 0x3f],
+            [0x0f, 0xff, 0x3f],
+            set((1125, 256), 3, Some("DLPF 7")),
+            set((1125, 4096), 3, Some("DLPF 7")),
+        ),
+        ([4, 0x1b], [0xf0, 21, 0x2d], set((1125, 5), 1, Some("DLPF 3")), set((1125, 22), 2, Some("DLPF 5"))),
+        ([4, 0x04], [0, 9, 0x02], set((9000, 1), 2, Some("bypass")), set((4500, 1), 1, Some("bypass"))),
     ];
     for (gyro_bytes, accel_bytes, gyro, accel) in rows {
         let mut chip = awake();
@@ -251,58 +231,20 @@ fn what_is_not_there_is_told() {
 }
 
 proptest! {
-    /// Whatever is written and read, nothing panics, and in the end every sample was read, missed or lost.
     #[test]
-    fn every_sample_is_accounted_for(
-        steps in prop::collection::vec((0u8..6, any::<u8>(), any::<[u8; 3]>()), 1..300),
-    ) {
+    fn every_sample_is_accounted_for(steps in checks::steps()) {
         let mut chip = awake();
         put(&mut chip, &[0x03, 0x60]);
         put(&mut chip, &[0x67, 0x1e]);
-        for (k, (what, register, bytes)) in steps.into_iter().enumerate() {
-            let k = k as u64;
-            match what {
-                0 => write(&mut chip, k, &[register, bytes[0], bytes[1], bytes[2]], bytes[0] & 1 == 1),
-                1 => { burst::<30>(&mut chip, register); }
-                2 => { burst::<37>(&mut chip, 0x72); }
-                3 => chip.sample(k, &Samples { accel: Some([k as i16; 3]), ..Samples::default() }),
-                _ => chip.sample(k, &mag([k as i16; 3])),
-            }
-            for channel in Channel::ALL {
-                let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-                prop_assert!(read + missed + overflowed <= made, "{channel:?} {:?}", chip.tally(channel));
-            }
-        }
-        put(&mut chip, &[0x7f, 0]);
-        put(&mut chip, &[0x06, 0x80]);
-        for channel in [Channel::Gyro, Channel::Accel] {
-            let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-            prop_assert_eq!(read + missed + overflowed, made, "{:?} {:?}", channel, chip.tally(channel));
-        }
+        let port = Port { address: 0x69, fifo: (0x72, 37), reset: &[&[0x7f, 0], &[0x06, 0x80]] };
+        checks::every_sample_is_accounted_for(&mut chip, &[port], &steps)?;
     }
 
-    /// Against a simple model: a burst at any time is the newest sample, whole.
     #[test]
-    fn bursts_at_any_pace_are_whole_samples_in_order(reads in prop::collection::vec(0u8..5, 1..100)) {
+    fn bursts_at_any_pace_are_whole_samples_in_order(paces in prop::collection::vec(0u8..5, 1..100)) {
         let mut chip = awake();
-        let (mut k, mut fresh, mut expected) = (0i16, false, Tally::default());
-        for samples in reads {
-            for _ in 0..samples {
-                k += 1;
-                expected.made += 1;
-                expected.missed += u64::from(fresh);
-                fresh = true;
-                chip.sample(0, &both([k, -k, k], [-k, k, -k]));
-            }
-            let seen: [u8; 12] = burst(&mut chip, 0x2d);
-            prop_assert_eq!(&seen[..6], &words([-k, k, -k])[..]);
-            prop_assert_eq!(&seen[6..], &words([k, -k, k])[..]);
-            if k > 0 {
-                expected.read += u64::from(fresh);
-                expected.again += u64::from(!fresh);
-            }
-            fresh = false;
-            prop_assert_eq!(chip.tally(Channel::Gyro), expected);
-        }
+        let parts = [(Channel::Accel, 0), (Channel::Gyro, 6)];
+        let data = Data { address: 0x69, register: 0x2d, parts: &parts, order: i16::to_be_bytes, at_first: 0 };
+        checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[data], &paces)?;
     }
 }

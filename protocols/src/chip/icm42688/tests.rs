@@ -1,23 +1,13 @@
 use super::*;
-use crate::chip::{read, write};
+use crate::chip::checks::{self, Data, Port, both, burst, kth, put, words};
+use crate::chip::write;
 use proptest::prelude::*;
-
-fn put(chip: &mut Icm42688, bytes: &[u8]) {
-    write(chip, 0, bytes, false);
-}
 
 /// Writes to a bank and goes back to bank 0.
 fn put_in(chip: &mut Icm42688, bank: u8, bytes: &[u8]) {
     put(chip, &[0x76, bank]);
     put(chip, bytes);
     put(chip, &[0x76, 0]);
-}
-
-fn burst<const N: usize>(chip: &mut Icm42688, register: u8) -> [u8; N] {
-    let mut bytes = [0; N];
-    write(chip, 0, &[register], false);
-    read(chip, 0, &mut bytes);
-    bytes
 }
 
 /// Both in low-noise mode.
@@ -34,20 +24,6 @@ fn streaming(config: u8) -> Icm42688 {
     put(&mut chip, &[0x5f, config]);
     put(&mut chip, &[0x16, 0x40]);
     chip
-}
-
-fn both(gyro: [i16; 3], accel: [i16; 3]) -> Samples {
-    Samples { gyro: Some(gyro), accel: Some(accel), ..Samples::default() }
-}
-
-/// A sample whose every component is `k`.
-fn kth(k: i16) -> Samples {
-    both([k; 3], [k; 3])
-}
-
-fn words(counts: [i16; 3]) -> [u8; 6] {
-    let [x, y, z] = counts.map(i16::to_be_bytes);
-    [x[0], x[1], y[0], y[1], z[0], z[1]]
 }
 
 #[test]
@@ -377,33 +353,11 @@ fn what_is_not_there_is_told() {
 }
 
 proptest! {
-    /// Whatever is written and read, nothing panics, and in the end every sample was read, missed or lost.
     #[test]
-    fn every_sample_is_accounted_for(
-        steps in prop::collection::vec((0u8..7, any::<u8>(), any::<[u8; 3]>()), 1..400),
-        config in any::<u8>(),
-    ) {
+    fn every_sample_is_accounted_for(steps in checks::steps(), config in any::<u8>()) {
         let mut chip = streaming(config);
-        for (k, (what, register, bytes)) in steps.into_iter().enumerate() {
-            let (t_ns, count) = (k as u64 * 1_000_000, k as i16);
-            match what {
-                0 => write(&mut chip, t_ns, &[register, bytes[0], bytes[1], bytes[2]], bytes[0] & 1 == 1),
-                1 => { burst::<30>(&mut chip, register); }
-                2 => { burst::<41>(&mut chip, 0x30); }
-                3 => chip.sample(t_ns, &Samples { gyro: Some([count; 3]), ..Samples::default() }),
-                _ => chip.sample(t_ns, &kth(count)),
-            }
-            for channel in Channel::ALL {
-                let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-                prop_assert!(read + missed + overflowed <= made, "{channel:?} {:?}", chip.tally(channel));
-            }
-        }
-        put(&mut chip, &[0x76, 0]);
-        put(&mut chip, &[0x11, 0x01]);
-        for channel in [Channel::Gyro, Channel::Accel] {
-            let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-            prop_assert_eq!(read + missed + overflowed, made, "{:?} {:?}", channel, chip.tally(channel));
-        }
+        let port = Port { address: 0x68, fifo: (0x30, 41), reset: &[&[0x76, 0], &[0x11, 0x01]] };
+        checks::every_sample_is_accounted_for(&mut chip, &[port], &steps)?;
     }
 
     /// Against a simple model: packets leave whole and in order, however many are read at a time.
@@ -432,28 +386,11 @@ proptest! {
         }
     }
 
-    /// Against a simple model: a burst at any time is the newest sample, whole.
     #[test]
-    fn bursts_at_any_pace_are_whole_samples_in_order(reads in prop::collection::vec(0u8..5, 1..100)) {
+    fn bursts_at_any_pace_are_whole_samples_in_order(paces in prop::collection::vec(0u8..5, 1..100)) {
         let mut chip = awake();
-        let (mut k, mut fresh, mut expected) = (0i16, false, Tally::default());
-        for samples in reads {
-            for _ in 0..samples {
-                k += 1;
-                expected.made += 1;
-                expected.missed += u64::from(fresh);
-                fresh = true;
-                chip.sample(0, &both([k, -k, k], [-k, k, -k]));
-            }
-            let seen: [u8; 12] = burst(&mut chip, 0x1f);
-            if k > 0 {
-                prop_assert_eq!(&seen[..6], &words([-k, k, -k])[..]);
-                prop_assert_eq!(&seen[6..], &words([k, -k, k])[..]);
-                expected.read += u64::from(fresh);
-                expected.again += u64::from(!fresh);
-            }
-            fresh = false;
-            prop_assert_eq!(chip.tally(Channel::Gyro), expected);
-        }
+        let parts = [(Channel::Accel, 0), (Channel::Gyro, 6)];
+        let data = Data { address: 0x68, register: 0x1f, parts: &parts, order: i16::to_be_bytes, at_first: i16::MIN };
+        checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[data], &paces)?;
     }
 }

@@ -1,40 +1,16 @@
 extern crate std;
 
 use super::*;
+use crate::chip::checks::{self, Backlog, Data, Port, both, burst, kth, put, rates, set};
 use crate::chip::{read, write};
 use proptest::prelude::*;
-use std::collections::VecDeque;
 use std::vec::Vec;
-
-fn put(chip: &mut Lsm6dso, bytes: &[u8]) {
-    write(chip, 0, bytes, false);
-}
-
-fn burst<const N: usize>(chip: &mut Lsm6dso, register: u8) -> [u8; N] {
-    let mut bytes = [0; N];
-    write(chip, 0, &[register], false);
-    read(chip, 0, &mut bytes);
-    bytes
-}
-
-fn both(gyro: [i16; 3], accel: [i16; 3]) -> Samples {
-    Samples { gyro: Some(gyro), accel: Some(accel), ..Samples::default() }
-}
-
-/// A sample whose every component is `k`.
-fn kth(k: i16) -> Samples {
-    both([k; 3], [k; 3])
-}
 
 /// Both sensors at 104 Hz, ±2 g and ±250 °/s.
 fn awake() -> Lsm6dso {
     let mut chip = Lsm6dso::new(0x6a);
     put(&mut chip, &[0x10, 0x40, 0x40]);
     chip
-}
-
-fn set(rate: (u32, u32), range: u8, filter: Option<&'static str>) -> Setting {
-    Setting { rate: Some(rate), range, filter }
 }
 
 #[test]
@@ -102,8 +78,7 @@ fn rates_ranges_and_filters_are_those_of_the_register_map() {
     }
     let mut chip = Lsm6dso::new(0x6a);
     put(&mut chip, &[0x10, 0xc0, 0xb0]);
-    let rates = [Channel::Gyro, Channel::Accel].map(|it| chip.setting(it).and_then(|set| set.rate));
-    assert_eq!(rates, [None; 2], "reserved codes");
+    assert_eq!(rates(&chip), [None; 2], "reserved codes");
 }
 
 #[test]
@@ -301,78 +276,35 @@ fn what_is_turned_on_and_not_modelled_is_told() {
 }
 
 proptest! {
-    /// Whatever is written and read, nothing panics, and every sample is accounted for.
     #[test]
-    fn every_sample_is_accounted_for(
-        steps in prop::collection::vec((0u8..5, any::<u8>(), any::<[u8; 3]>()), 1..200),
-    ) {
+    fn every_sample_is_accounted_for(steps in checks::steps()) {
         let mut chip = awake();
         put(&mut chip, &[0x09, 0x44, 0x06]);
-        for (k, (what, register, bytes)) in steps.into_iter().enumerate() {
-            match what {
-                0 => write(&mut chip, k as u64, &[register, bytes[0], bytes[1], bytes[2]], bytes[0] & 1 == 1),
-                1 => { burst::<30>(&mut chip, register); }
-                2 => { burst::<30>(&mut chip, 0x78); }
-                _ => chip.sample(k as u64, &kth(k as i16)),
-            }
-            for channel in Channel::ALL {
-                let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-                prop_assert!(read + missed + overflowed <= made, "{:?}", chip.tally(channel));
-            }
-        }
-        put(&mut chip, &[0x01, 0x00]);
-        put(&mut chip, &[0x12, 0x01]);
-        for channel in Channel::ALL {
-            let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-            prop_assert_eq!(read + missed + overflowed, made);
-        }
+        let port = Port { address: 0x6a, fifo: (0x78, 30), reset: &[&[0x01, 0x00], &[0x12, 0x01]] };
+        checks::every_sample_is_accounted_for(&mut chip, &[port], &steps)?;
     }
 
-    /// Against a simple model: a burst at any time is the newest sample, whole.
     #[test]
-    fn bursts_at_any_pace_are_whole_samples_in_order(reads in prop::collection::vec(0u8..5, 1..100)) {
+    fn bursts_at_any_pace_are_whole_samples_in_order(paces in prop::collection::vec(0u8..5, 1..100)) {
         let mut chip = awake();
-        let (mut k, mut fresh, mut expected) = (0i16, false, Tally::default());
-        for samples in reads {
-            for _ in 0..samples {
-                k += 1;
-                expected.made += 1;
-                expected.missed += u64::from(fresh);
-                fresh = true;
-                chip.sample(0, &both([k, -k, k], [-k, k, -k]));
-            }
-            let counts = [k, -k, k, -k, k, -k].map(i16::to_le_bytes).concat();
-            prop_assert_eq!(&burst::<12>(&mut chip, 0x22)[..], counts);
-            if k > 0 {
-                expected.read += u64::from(fresh);
-                expected.again += u64::from(!fresh);
-            }
-            fresh = false;
-            prop_assert_eq!(chip.tally(Channel::Accel), expected);
-        }
+        let parts = [(Channel::Gyro, 0), (Channel::Accel, 6)];
+        let data = Data { address: 0x6a, register: 0x22, parts: &parts, order: i16::to_le_bytes, at_first: 0 };
+        checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[data], &paces)?;
     }
 
-    /// Against a queue of words: what leaves the FIFO is what entered it, oldest first.
     #[test]
-    fn the_fifo_keeps_the_newest_words_in_order(reads in prop::collection::vec((0usize..300, 0usize..300), 1..20)) {
+    fn the_fifo_keeps_the_newest_words_in_order(paces in prop::collection::vec((0usize..300, 0usize..300), 1..20)) {
         let mut chip = awake();
         put(&mut chip, &[0x09, 0x04, 0x06]);
-        let (mut k, mut model) = (0i16, VecDeque::new());
-        for (samples, words) in reads {
-            for _ in 0..samples {
-                k += 1;
-                model.push_back(k);
-                chip.sample(0, &kth(k));
-            }
-            while model.len() > 512 {
-                model.pop_front();
-            }
-            let [low, high]: [u8; 2] = burst(&mut chip, 0x3a);
-            prop_assert_eq!(u16::from_le_bytes([low, high & 3]), model.len() as u16);
-            for _ in 0..words {
-                let [_, low, high, ..] = burst::<7>(&mut chip, 0x78);
-                prop_assert_eq!(i16::from_le_bytes([low, high]), model.pop_front().unwrap_or(0));
-            }
-        }
+        let fifo = Backlog {
+            room: 512,
+            waiting: |chip| usize::from(u16::from_le_bytes(burst(chip, 0x3a)) & 0x3ff),
+            next: |chip| {
+                let [_, low, high, ..] = burst::<7>(chip, 0x78);
+                i16::from_le_bytes([low, high])
+            },
+            empty: 0,
+        };
+        checks::the_fifo_keeps_the_newest_frames_in_order(&mut chip, &fifo, &paces)?;
     }
 }

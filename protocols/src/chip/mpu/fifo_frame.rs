@@ -24,9 +24,9 @@ impl Mpu {
         self.fifo_is_on() && self.of(FIFO_EN) & bits == bits
     }
 
-    /// Puts what FIFO_EN selects of the newest sample there, in the order of the registers. `with_accel` is whether the
-    /// accelerometer's sample is new: at a faster gyro it is repeated.
-    pub(super) fn push_frame(&mut self, with_accel: bool) {
+    /// Puts what FIFO_EN selects of the newest sample there, in the order of the registers. `with_gyro` and
+    /// `with_accel` are whether theirs are new: that of a slower one, or of one that is off, is repeated.
+    pub(super) fn push_frame(&mut self, with_gyro: bool, with_accel: bool) {
         if !self.fifo_is_on() {
             return;
         }
@@ -45,7 +45,7 @@ impl Mpu {
                 frame.add(&count.to_be_bytes());
             }
         }
-        frame.is_sample(Channel::Gyro, 6, enabled & GYRO == GYRO);
+        frame.is_sample(Channel::Gyro, 6, with_gyro && enabled & GYRO == GYRO);
         if enabled & SLAVES != 0 {
             frame.add(&self.external.bytes[..self.external.len]);
         }

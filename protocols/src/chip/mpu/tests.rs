@@ -1,26 +1,7 @@
 use super::*;
-use crate::chip::{read, write};
+use crate::chip::checks::{self, Data, Port, both, burst, kth, put, set, words};
+use crate::chip::write;
 use proptest::prelude::*;
-
-fn put(chip: &mut Mpu, bytes: &[u8]) {
-    write(chip, 0, bytes, false);
-}
-
-fn burst<const N: usize>(chip: &mut Mpu, register: u8) -> [u8; N] {
-    let mut bytes = [0; N];
-    write(chip, 0, &[register], false);
-    read(chip, 0, &mut bytes);
-    bytes
-}
-
-fn both(gyro: [i16; 3], accel: [i16; 3]) -> Samples {
-    Samples { gyro: Some(gyro), accel: Some(accel), ..Samples::default() }
-}
-
-/// A sample whose every component is `k`.
-fn kth(k: i16) -> Samples {
-    both([k; 3], [k; 3])
-}
 
 #[test]
 fn each_answers_with_its_own_identity_and_wakes_as_its_sheet_says() {
@@ -62,21 +43,41 @@ fn asleep_or_in_standby_it_takes_no_sample() {
 #[test]
 fn rates_ranges_and_filters_are_those_of_the_register_map() {
     let rows: [(Mpu, &[u8], Setting, Setting); 6] = [
-        (Mpu::mpu6050(0x68), &[0x19, 0, 0, 0, 0], set(8000, 1, 0, "DLPF 0"), set(1000, 1, 0, "DLPF 0")),
-        (Mpu::mpu6050(0x68), &[0x19, 7, 0, 0x18, 0x08], set(8000, 8, 3, "DLPF 0"), set(8000, 8, 1, "DLPF 0")),
-        (Mpu::mpu6050(0x68), &[0x19, 4, 3, 0x08, 0x10], set(1000, 5, 1, "DLPF 3"), set(1000, 5, 2, "DLPF 3")),
-        (Mpu::mpu6500(0x68), &[0x19, 4, 3, 0, 0, 2], set(1000, 5, 0, "DLPF 3"), set(1000, 5, 0, "DLPF 2")),
+        (
+            Mpu::mpu6050(0x68),
+            &[0x19, 0, 0, 0, 0],
+            set((8000, 1), 0, Some("DLPF 0")),
+            set((1000, 1), 0, Some("DLPF 0")),
+        ),
+        (
+            Mpu::mpu6050(0x68),
+            &[0x19, 7, 0, 0x18, 0x08],
+            set((8000, 8), 3, Some("DLPF 0")),
+            set((8000, 8), 1, Some("DLPF 0")),
+        ),
+        (
+            Mpu::mpu6050(0x68),
+            &[0x19, 4, 3, 0x08, 0x10],
+            set((1000, 5), 1, Some("DLPF 3")),
+            set((1000, 5), 2, Some("DLPF 3")),
+        ),
+        (
+            Mpu::mpu6500(0x68),
+            &[0x19, 4, 3, 0, 0, 2],
+            set((1000, 5), 0, Some("DLPF 3")),
+            set((1000, 5), 0, Some("DLPF 2")),
+        ),
         (
             Mpu::mpu9250(0x68, [128; 3]),
             &[0x19, 9, 7, 0, 0, 8],
-            set(8000, 1, 0, "DLPF 7"),
-            set(4000, 1, 0, "Fchoice 0"),
+            set((8000, 1), 0, Some("DLPF 7")),
+            set((4000, 1), 0, Some("Fchoice 0")),
         ),
         (
             Mpu::mpu9250(0x68, [128; 3]),
             &[0x19, 9, 1, 2, 0, 7],
-            set(32000, 1, 0, "Fchoice 01"),
-            set(1000, 10, 0, "DLPF 7"),
+            set((32000, 1), 0, Some("Fchoice 01")),
+            set((1000, 10), 0, Some("DLPF 7")),
         ),
     ];
     for (mut chip, bytes, gyro, accel) in rows {
@@ -88,10 +89,6 @@ fn rates_ranges_and_filters_are_those_of_the_register_map() {
             "{bytes:?}"
         );
     }
-}
-
-fn set(hz: u32, divider: u32, range: u8, filter: &'static str) -> Setting {
-    Setting { rate: Some((hz, divider)), range, filter: Some(filter) }
 }
 
 #[test]
@@ -106,11 +103,6 @@ fn offsets_shift_what_is_read_at_every_full_scale() {
         assert_eq!(burst(&mut chip, 0x43), words([100 + gyro, 100 - gyro, 100]));
         assert_eq!(burst(&mut chip, 0x3b), words([100 + accel, 100, 100]));
     }
-}
-
-fn words(counts: [i16; 3]) -> [u8; 6] {
-    let [x, y, z] = counts.map(i16::to_be_bytes);
-    [x[0], x[1], y[0], y[1], z[0], z[1]]
 }
 
 #[test]
@@ -162,6 +154,21 @@ fn the_fifo_holds_frames_in_the_order_of_registers_and_says_when_it_overflows() 
 }
 
 #[test]
+fn a_frame_counts_the_samples_that_are_new_in_it() {
+    let mut chip = Mpu::mpu6050(0x68);
+    put(&mut chip, &[0x6b, 0]);
+    put(&mut chip, &[0x6a, 0x44]);
+    put(&mut chip, &[0x23, 0x78]);
+    chip.sample(0, &Samples { gyro: None, ..kth(1) });
+    assert_eq!(burst(&mut chip, 0x72), [0, 0], "the gyro's samples make the frames");
+    put(&mut chip, &[0x6c, 0x07]);
+    chip.sample(0, &kth(2));
+    assert_eq!(burst(&mut chip, 0x74), [0, 2, 0, 2, 0, 2, 0, 0, 0, 0, 0, 0], "unless it is off");
+    assert_eq!(chip.tally(Channel::Accel), Tally { made: 2, read: 1, missed: 1, ..Tally::default() });
+    assert_eq!(chip.tally(Channel::Gyro), Tally::default());
+}
+
+#[test]
 fn a_fifo_that_stops_keeps_the_oldest() {
     let mut chip = Mpu::mpu9250(0x68, [128; 3]);
     put(&mut chip, &[0x1a, 0x41]);
@@ -188,50 +195,20 @@ fn the_dmps_memory_reads_back_and_its_absence_is_told() {
 }
 
 proptest! {
-    /// Whatever is written and read, nothing panics, and every sample is accounted for.
     #[test]
-    fn every_sample_is_accounted_for(
-        steps in prop::collection::vec((0u8..4, any::<u8>(), any::<[u8; 3]>()), 1..200),
-        model in 0..3,
-    ) {
-        let mut chip = [Mpu::mpu6050(0x68), Mpu::mpu6500(0x68), Mpu::mpu9250(0x68, [1, 2, 3])][model as usize].clone();
+    fn every_sample_is_accounted_for(steps in checks::steps(), model in 0..3usize) {
+        let mut chip = [Mpu::mpu6050(0x68), Mpu::mpu6500(0x68), Mpu::mpu9250(0x68, [1, 2, 3])][model].clone();
         put(&mut chip, &[0x6b, 0]);
-        for (k, (what, register, bytes)) in steps.into_iter().enumerate() {
-            match what {
-                0 => write(&mut chip, k as u64, &[register, bytes[0], bytes[1], bytes[2]], bytes[0] & 1 == 1),
-                1 => { burst::<30>(&mut chip, register); }
-                _ => chip.sample(k as u64, &Samples { mag: Some([k as i16; 3]), ..kth(k as i16) }),
-            }
-            for channel in Channel::ALL {
-                let Tally { made, read, missed, overflowed, .. } = chip.tally(channel);
-                prop_assert!(read + missed + overflowed <= made, "{:?}", chip.tally(channel));
-            }
-        }
+        let port = Port { address: 0x68, fifo: (0x74, 30), reset: &[&[0x6b, 0x80]] };
+        checks::every_sample_is_accounted_for(&mut chip, &[port], &steps)?;
     }
 
-    /// Against a simple model: a burst at any time is the newest sample, whole.
     #[test]
-    fn bursts_at_any_pace_are_whole_samples_in_order(reads in prop::collection::vec(0u8..5, 1..100)) {
+    fn bursts_at_any_pace_are_whole_samples_in_order(paces in prop::collection::vec(0u8..5, 1..100)) {
         let mut chip = Mpu::mpu6050(0x68);
         put(&mut chip, &[0x6b, 0]);
-        let (mut k, mut fresh, mut expected) = (0i16, false, Tally::default());
-        for samples in reads {
-            for _ in 0..samples {
-                k += 1;
-                expected.made += 1;
-                expected.missed += u64::from(fresh);
-                fresh = true;
-                chip.sample(0, &both([k, -k, k], [-k, k, -k]));
-            }
-            let seen: [u8; 14] = burst(&mut chip, 0x3b);
-            prop_assert_eq!(&seen[..6], &words([-k, k, -k])[..]);
-            prop_assert_eq!(&seen[8..], &words([k, -k, k])[..]);
-            if k > 0 {
-                expected.read += u64::from(fresh);
-                expected.again += u64::from(!fresh);
-            }
-            fresh = false;
-            prop_assert_eq!(chip.tally(Channel::Gyro), expected);
-        }
+        let parts = [(Channel::Accel, 0), (Channel::Gyro, 8)];
+        let data = Data { address: 0x68, register: 0x3b, parts: &parts, order: i16::to_be_bytes, at_first: 0 };
+        checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[data], &paces)?;
     }
 }
