@@ -49,6 +49,7 @@ mod producing;
 mod queue;
 mod replies;
 mod ring;
+mod run;
 #[cfg(test)]
 mod session_tests;
 mod settling;
@@ -67,7 +68,6 @@ mod watch_tests;
 mod ways_out;
 
 pub use budget::{Budget, afford};
-pub use control::run;
 pub use error::SessionError;
 pub use event::{Event, Progress};
 pub use heard::Judging;
@@ -75,6 +75,7 @@ pub use job::{Job, OnBytes, Tap};
 pub use off::Off;
 pub use outcome::Outcome;
 pub use pace::Speed;
+pub use run::run;
 pub use watch::{Record, Watch, Watched};
 
 use shared::Shared;

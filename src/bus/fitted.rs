@@ -123,7 +123,7 @@ pub fn fit(sensors: &[SensorPlan], chip: Option<&str>) -> Result<Vec<Fitted>, St
     let mut inside = Vec::new();
     for (i, sensor) in sensors.iter().enumerate() {
         let Some(channel) = channel(sensor.kind) else { continue };
-        let kind = kind_of(sensor, channel, chip)?;
+        let Some(kind) = kind_of(sensor, channel, chip)? else { continue };
         if is_inside(kind, channel) {
             inside.push((i, sensor, kind));
         } else {
@@ -140,6 +140,13 @@ pub fn fit(sensors: &[SensorPlan], chip: Option<&str>) -> Result<Vec<Fitted>, St
             _ => place(&mut chips, kind, Channel::Mag, (i, sensor))?,
         }
     }
+    if let Some(chip) = chip.filter(|chip| !chips.iter().any(|it| it.kind.part.eq_ignore_ascii_case(chip))) {
+        let all: Vec<_> = chips.iter().map(ToString::to_string).collect();
+        return Err(format!(
+            "the {chip} that is asked for has no sensor: those of the scene have parts of their own, {}; leave it out, or leave out their parts",
+            all.join(", ")
+        ));
+    }
     if chips.is_empty() {
         return Err("a bus needs a gyro, an accel or a mag in the scene".into());
     }
@@ -153,16 +160,24 @@ pub fn fit(sensors: &[SensorPlan], chip: Option<&str>) -> Result<Vec<Fitted>, St
     Ok(chips)
 }
 
-/// What a sensor is.
-fn kind_of(sensor: &SensorPlan, channel: Channel, chip: Option<&str>) -> Result<&'static ChipKind, String> {
+/// What a sensor is; `None` of one without a part that `chip` does not measure.
+fn kind_of(
+    sensor: &SensorPlan,
+    channel: Channel,
+    chip: Option<&str>,
+) -> Result<Option<&'static ChipKind>, String> {
     let kind = sensor.kind;
     let Some(part) = sensor.part.or(chip) else {
         return Err(format!(
-            "[{kind}] has no part, so there is no chip for it on a bus: give it one, such as part = \"MPU-9250\", or write [[output]] with to = \"bus@pty\" and chip = \"MPU-9250\" for registers without that part's errors"
+            "[{kind}] has no part, so there is no chip for it on a bus: give it one, such as part = \"MPU-9250\" (--set {kind}.part=MPU-9250), or name a chip without that part's errors, such as mpu9250-bus@pty"
         ));
     };
     let has = |it: &&ChipKind| it.has(channel);
-    CHIPS.iter().filter(has).find(|it| it.part.eq_ignore_ascii_case(part)).ok_or_else(|| {
+    let is_it = |it: &&ChipKind| it.part.eq_ignore_ascii_case(part);
+    if sensor.part.is_none() && CHIPS.iter().any(|it| is_it(&it) && !it.has(channel)) {
+        return Ok(None);
+    }
+    CHIPS.iter().filter(has).find(is_it).map(Some).ok_or_else(|| {
         let mut names: Vec<_> = CHIPS.iter().filter(has).map(|it| it.part).collect();
         names.dedup();
         format!(

@@ -25,7 +25,7 @@ pub struct Arguments {
     /// Where to: PROTOCOL@LINK or TARGET@LINK, such as mpu@pty or px4@/dev/ttyACM0; may be repeated
     #[arg(long = "to", value_name = "PROTOCOL@LINK", value_parser = options::output)]
     to: Vec<Output>,
-    /// Where else the other side tells its attitude, such as mavlink@tcpin:127.0.0.1:5762: nothing is sent there
+    /// Where else the other side tells its attitude, such as mavlink@tcpin:127.0.0.1:5762: it is sent no readings there
     #[arg(long, value_name = "PROTOCOL@LINK", value_parser = options::mute)]
     attitude: Option<Output>,
     /// How much of the scene, such as 90s; longer than it lasts holds at the end [default: all of it]
@@ -241,6 +241,9 @@ fn refuse_bus(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<
             "{} cannot go with {}: a driver asks the chips on a bus at times of its own. Play one of them alone; --attitude PROTOCOL@LINK hears an attitude beside it",
             other.to, bus.to
         )));
+    }
+    if arguments.qgc.is_some() {
+        return Err(Refusal("--qgc passes on the other messages of a controller, and a driver on a bus has none: leave it out".into()));
     }
     if arguments.speed == Speed::Max {
         return Err(Refusal(

@@ -75,6 +75,12 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let limits = options::limits(&arguments.limit, &plan)?;
     let job = job(arguments, Arc::new(plan), output);
     let (plan, output) = (job.plan.clone(), &job.outputs[0]);
+    if !output.sends() {
+        return Err(Refusal(format!(
+            "{} sends no packets whose time could be measured: `ratetable run` reports how fast a bus is answered",
+            output.to
+        )));
+    }
     let shape = TimingReport::shape(job.shape());
     let as_json = serde_json::to_value(&shape)?;
     limits.iter().try_for_each(|limit| limit.check(&as_json))?;

@@ -47,6 +47,18 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
     ("force", "duration", "how long it acts"),
     ("force", "acceleration", "a vector in `frame`"),
     ("force", "frame", "\"body\" (default) or \"nav\""),
+    ("setting", "sensor", "the sensor's table, such as \"gyro\""),
+    (
+        "setting",
+        "start",
+        "from when on: the sensor's first tick at or after it begins the new rate (default 0 s)",
+    ),
+    ("setting", "rate", "its rate from then on, or \"off\" while it takes no samples (default: as before)"),
+    (
+        "setting",
+        "range",
+        "and so `resolution`, `filter` (or \"none\") and `delay`: as in the sensor's table (default: as before; a part fills in the counts of a range)",
+    ),
     ("fault", "sensor", "the sensor's table, such as \"gyro\" or \"baro\""),
     (
         "fault",
@@ -137,12 +149,22 @@ pub const FIXED_KEYS: &[(&str, &str, &str)] = &[
         "overload",
         "what to do with a packet that the link does not accept in time: \"drop-newest\" (default), \"drop-oldest\", or \"stretch\", which stops scene time",
     ),
+    (
+        "output",
+        "send",
+        "false: no readings are sent, and the attitude that the other side tells there is scored (default true)",
+    ),
+    (
+        "output",
+        "chip",
+        "for `bus`: the part whose registers sensors without a part of their own have, such as \"MPU-9250\"",
+    ),
     ("output", "force", "true: start even if the baud rate is too low for the packets (default false)"),
 ];
 
 /// Whether a sensor has one of [`SENSOR_KEYS`]: only triads are parts on a chip's axes that may integrate.
 pub fn takes(sensor: SensorKind, key: &str) -> bool {
-    sensor.is_triad() || !["sampling", "mount", "part"].contains(&key)
+    sensor.is_triad() || !["sampling", "mount", "part", "address"].contains(&key)
 }
 
 /// Keys of every sensor besides its error terms'.
@@ -150,6 +172,7 @@ pub const SENSOR_KEYS: &[(&str, &str)] = &[
     ("rate", "output data rate, such as \"1 kHz\" or \"400/3 Hz\" ([gps] defaults to \"5 Hz\")"),
     ("phase", "when tick 0 is due (default \"0 s\")"),
     ("sampling", "\"point\" (default), or \"average\" over the interval that ends at the tick"),
+    ("address", "where the sensor's chip answers on a bus, 7 bits, such as 0x69 (default: its usual one)"),
     ("mount", "where the chip's x, y and z point, such as \"flu\", or a quaternion from body to chip"),
     ("part", "take values from a datasheet: one of `ratetable list parts`; other keys override them"),
 ];

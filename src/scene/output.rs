@@ -23,12 +23,14 @@ pub struct Destination {
     pub target: Option<&'static Target>,
     /// Where its controller answers, if not on the link itself, or tells its attitude besides (a UDP port).
     pub answers: Option<Address>,
+    /// Of a bus: the chip that was named in place of the protocol, for sensors without a part.
+    pub chip: Option<&'static str>,
 }
 
 impl Destination {
     /// A protocol on a link.
     pub fn new(protocol: Protocol, address: Address) -> Destination {
-        Destination { protocol, address, target: None, answers: None }
+        Destination { protocol, address, target: None, answers: None, chip: None }
     }
 
     /// Whether somebody at the other end is spoken with: who answers elsewhere is not reached over every link.
@@ -56,7 +58,10 @@ impl Destination {
     /// The same packets and the same controller, on the link called `link`.
     pub fn at(&self, link: impl fmt::Display) -> String {
         let what = self.target.map_or(self.protocol.name(), |target| target.name);
-        format!("{what}@{link}")
+        match self.chip {
+            Some(chip) => format!("{}-{what}@{link}", chip.to_lowercase()),
+            None => format!("{what}@{link}"),
+        }
     }
 }
 
@@ -74,6 +79,10 @@ impl FromStr for Destination {
                 "`{text}` is not PROTOCOL@LINK: write, for example, {example}@{link} (protocols: {})",
                 names.join(", ")
             ));
+        };
+        let (chip, name) = match name.strip_suffix("-bus") {
+            Some(chip) => (Some(chip_called(chip)?), Protocol::Bus.name()),
+            None => (None, name),
         };
         let target = Target::from_name(name);
         let Some(protocol) = target.map(|target| target.protocol).or_else(|| Protocol::from_name(name))
@@ -95,8 +104,23 @@ impl FromStr for Destination {
             (_, Some(port), _) => Some(Address::UdpIn(Endpoint::new("127.0.0.1", port))),
             _ => None,
         };
-        Ok(Destination { protocol, address, target, answers })
+        Ok(Destination { protocol, address, target, answers, chip })
     }
+}
+
+/// The part that `icm42688-bus` or `mpu-bus` names, however it is spelled.
+fn chip_called(name: &str) -> Result<&'static str, String> {
+    let plain = |name: &str| name.replace('-', "").to_lowercase();
+    let names = || SensorKind::TRIADS.into_iter().flat_map(parts::names);
+    // The one of the family that has everything.
+    let wanted = if name == "mpu" { plain("MPU-9250") } else { plain(name) };
+    let found = names()
+        .find(|part| plain(part) == wanted)
+        .or_else(|| names().find(|part| plain(part).starts_with(&wanted)));
+    found.filter(|_| !wanted.is_empty()).ok_or_else(|| {
+        let near = suggest::did_you_mean(name, names());
+        format!("`{name}-bus`: `{name}` is not a known part; `ratetable list parts` shows them{near}")
+    })
 }
 
 impl fmt::Display for Destination {
@@ -154,6 +178,7 @@ impl Output {
     pub fn to(to: Destination) -> Output {
         let wire = wire::Options {
             controller: to.target.map(|target| target.controller),
+            chip: to.chip,
             ..wire::Options::default()
         };
         Output { to, wire, overload: Overload::default(), force: false, faults: Vec::new() }
@@ -199,6 +224,7 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     let word = |key, names: &[&'static str]| section.has(key).then(|| section.word(key, names, names[0]));
     let thin = word("thin", &Thin::NAMES).map(Thin::from_name);
     let at_end = word("at_end", &AtEnd::NAMES).map_or(AtEnd::default(), AtEnd::from_name);
+    let (is_mute, chip) = (section.flag("send") == Some(false), chip(section));
     let to = destination(section);
     // `version` is a number in MAVLink and a release of Betaflight.
     let is_betaflight = to.as_ref().is_some_and(|to| to.protocol == Protocol::Betaflight);
@@ -214,8 +240,18 @@ fn output(section: &Section<'_>, sensors: Option<&[SensorPlan]>) -> Option<Outpu
     if let Some(Controller::Betaflight(release)) = &mut controller {
         *release = betaflight(section);
     }
-    let (is_mute, chip) = (section.flag("send") == Some(false), chip(section));
-    let wire = wire::Options { layout, version, extras, controller, at_end, thin, claim, mag, is_mute, chip };
+    let wire = wire::Options {
+        layout,
+        version,
+        extras,
+        controller,
+        at_end,
+        thin,
+        claim,
+        mag,
+        is_mute,
+        chip: chip.or(to.chip),
+    };
     for key in Protocol::own_keys().filter(|key| section.has(key)) {
         let owners: Vec<_> = Protocol::owners(key).map(|it| format!("`{}`", it.name())).collect();
         if !Protocol::owners(key).any(|it| it == to.protocol) {

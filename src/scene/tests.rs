@@ -540,12 +540,14 @@ fn every_key_that_is_listed_is_known() {
     for (table, key, _) in FIXED_KEYS {
         let table = match *table {
             "" => String::new(),
-            "motion" | "force" | "fault" | "output" => format!("[[{table}]]"),
+            "motion" | "force" | "fault" | "setting" | "output" => format!("[[{table}]]"),
             _ => format!("[{table}]"),
         };
         let kind = match (table.as_str(), *key) {
             ("[[motion]]", "kind") => "",
             ("[[motion]]", _) => "kind = \"hold\"\n",
+            ("[[setting]]", "sensor") => "",
+            ("[[setting]]", _) => "sensor = \"gyro\"\n",
             ("[[fault]]", "sensor") => "kind = \"off\"\n",
             ("[[fault]]", "kind") => "sensor = \"gyro\"\n",
             ("[[fault]]", "size" | "share") => "sensor = \"gyro\"\nkind = \"spike\"\n",
@@ -557,7 +559,7 @@ fn every_key_that_is_listed_is_known() {
             ("[[fault]]", _) => "sensor = \"gyro\"\nkind = \"off\"\n",
             _ => "",
         };
-        let value = if ["pace", "force"].contains(key) { "1" } else { "true" };
+        let value = if ["pace", "force", "send"].contains(key) { "1" } else { "true" };
         let bad = format!("{table}\n{kind}{key} = {value}\n");
         let rest: String =
             SHORT.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();

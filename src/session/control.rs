@@ -20,7 +20,7 @@ use super::shared::TICK;
 use super::side::{Side, Waits};
 use super::talk::Talk;
 use super::watch::Watching;
-use super::{Event, Job, Outcome, Progress, SessionError, Shared, Speed, budget, bus, ring, step};
+use super::{Event, Job, Outcome, Progress, SessionError, Shared, Speed, budget, ring, step};
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
 use crate::motion::Truth;
@@ -41,27 +41,10 @@ const RING: usize = 8192;
 const PROGRESS: Duration = Duration::from_millis(100);
 /// Time between two looks at the links.
 const LOOK: Duration = Duration::from_millis(20);
-/// At full speed nothing moves without a reader. A reader that is away this long has left for good.
-const ABSENCE: Duration = Duration::from_secs(5);
 /// Time for answers that are still on their way when the last packet is sent.
 pub(super) const LAST_ANSWERS: Duration = Duration::from_millis(200);
 /// A link that does not take a farewell within this time does not get it.
 const FAREWELL: Duration = Duration::from_secs(1);
-
-/// Runs a job until it ends, the user presses Ctrl-C or the command ends; reports events to `on` meanwhile.
-///
-/// # Errors
-/// A link does not open, nobody connects in time, or a command does not start.
-pub fn run(job: Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
-    run_with(job, ABSENCE, on)
-}
-
-fn run_with(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let runtime =
-        runtime.map_err(|source| SessionError::System { doing: "start the control loop", source })?;
-    tokio::task::LocalSet::new().block_on(&runtime, Control::go(job, absence, on))
-}
 
 pub(super) struct Control {
     pub(super) job: Job,
@@ -78,15 +61,21 @@ pub(super) struct Control {
 }
 
 impl Control {
-    async fn go(job: Job, absence: Duration, on: &mut dyn FnMut(Event<'_>)) -> Result<Outcome, SessionError> {
-        let mut outside = Outside::new(on)?;
+    /// Opens every link.
+    pub(super) async fn ready(
+        job: Job,
+        absence: Duration,
+        outside: &mut Outside<'_>,
+    ) -> Result<Control, SessionError> {
         let mut control = Control::open(job, absence).await?;
-        control.open_ground(&mut outside).await?;
-        control.outputs.iter().for_each(|output| output.introduce(&mut outside));
-        if let Some(bus) = bus::of(&control.job).cloned() {
-            control.listen();
-            return bus::run(control, bus, outside).await;
-        }
+        control.open_ground(outside).await?;
+        control.outputs.iter().for_each(|output| output.introduce(outside));
+        Ok(control)
+    }
+
+    /// Streams to the end.
+    pub(super) async fn go(self, mut outside: Outside<'_>) -> Result<Outcome, SessionError> {
+        let mut control = self;
         let (inlet, outlet) = ring::ring(RING);
         let mut producing = Producing::NotYet(inlet);
         // Packets that do not depend on the other side's answers are made during the wait.
@@ -119,7 +108,6 @@ impl Control {
         control.finish(outside, pacer, granted, feeds).await
     }
 
-    /// Opens every link.
     async fn open(job: Job, absence: Duration) -> Result<Control, SessionError> {
         let mut outputs = Vec::new();
         // A bus has a thread of its own, which opens its link.
@@ -191,7 +179,8 @@ impl Control {
         self.wait_to_be_heard(outside).await
     }
 
-    fn listen(&mut self) {
+    /// Hears what comes back.
+    pub(super) fn listen(&mut self) {
         for (i, output) in self.outputs.iter_mut().enumerate() {
             if let Some(Ok(aside)) = &mut output.aside
                 && let Some(receiver) = aside.receiver()
@@ -438,48 +427,5 @@ impl Control {
     fn never_started(&self, outside: &Outside<'_>) -> Outcome {
         let accounts: Vec<_> = self.outputs.iter().map(|_| Account::default()).collect();
         Outcome { interrupted: outside.interrupted, command: outside.ended, ..self.outcome(&accounts) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{Output, Plan};
-    use std::fs::OpenOptions;
-    use std::io::Read;
-    use std::os::unix::fs::OpenOptionsExt;
-    use std::thread;
-
-    #[test]
-    fn at_full_speed_a_reader_that_leaves_for_good_ends_the_run() {
-        let scene = "duration = \"1000 s\"\n[gyro]\nrate = \"8 kHz\"\n";
-        let plan = Arc::new(Plan::parse(scene, "test", "test", &[]).unwrap());
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("imu");
-        let outputs = vec![Output::to(format!("mpu@pty:{}", path.display()).parse().unwrap())];
-        let job = Job { speed: Speed::Max, wait: Duration::from_secs(60), ..Job::new(plan, outputs) };
-        let read_a_while = move || {
-            // A reader that is away for less than the limit may come back.
-            for _ in 0..2 {
-                let mut port =
-                    OpenOptions::new().read(true).custom_flags(libc::O_NOCTTY).open(&path).unwrap();
-                port.read_exact(&mut vec![0; 100_000]).unwrap();
-                drop(port);
-                thread::sleep(Duration::from_millis(150));
-            }
-        };
-        let mut reader = None;
-        let outcome = run_with(job, Duration::from_secs(2), &mut |event| {
-            if let Event::Ready(_) = event {
-                reader = Some(thread::spawn(read_a_while.clone()));
-            }
-        });
-        reader.unwrap().join().unwrap();
-        let outcome = outcome.unwrap();
-        let link = &outcome.links[0];
-        assert_eq!(link.broken.as_deref(), Some("the reader left"));
-        assert!(link.bytes >= 200_000, "{link:?}");
-        assert!(outcome.played < SimTime(1_000_000_000_000));
-        assert!(!outcome.interrupted);
     }
 }

@@ -38,6 +38,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("scene", &["earth", "motion", "sensor", "wire", "link"]),
     // Where the vehicle is follows from where the scene begins.
     ("player", &["scene", "motion", "sensor", "schedule", "earth"]),
+    // A driver sets the sensors of a plan, which a player plays.
+    ("bus", &["player", "scene", "sensor"]),
     // The sizes of effects follow from the plan: its motion, place, sensors and their parts. The player's error-free
     // reading is what they are sizes beside, and a report's short numbers stand in their notes.
     ("effects", &["scene", "player", "motion", "sensor", "earth", "report"]),
@@ -55,6 +57,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "session",
         &[
+            "bus",
             "player",
             "wire",
             "clock",
@@ -80,6 +83,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "scene",
             "effects",
             "filters",
+            "bus",
             "session",
             "listen",
             "dataset",

@@ -4,6 +4,7 @@
 mod allan;
 mod architecture;
 mod auto;
+mod bus;
 mod check;
 mod circles;
 mod clocks;

@@ -3,12 +3,18 @@
 use crate::bus::Fitted;
 use std::collections::BTreeSet;
 
+/// Addresses without a chip that are told: whoever looks for chips tries them all.
+const ADDRESSES: usize = 3;
+
 #[derive(Default)]
-pub(super) struct Hints(BTreeSet<String>);
+pub(super) struct Hints {
+    told: BTreeSet<String>,
+    addresses: BTreeSet<u8>,
+}
 
 impl Hints {
     fn once(&mut self, hint: String) -> Option<String> {
-        self.0.insert(hint.clone()).then_some(hint)
+        self.told.insert(hint.clone()).then_some(hint)
     }
 
     /// A driver speaks to an address at which nobody is.
@@ -21,7 +27,17 @@ impl Hints {
                 "the driver sends the address {sent:#04x} as it is, and a bridge takes it shifted left by one, with bit 0 for a read: nobody answers at {address:#04x}"
             ));
         }
-        self.once(format!("nobody answers at {address:#04x}; on the bus: {}", all.join(", ")))
+        if self.addresses.len() > ADDRESSES || !self.addresses.insert(address) {
+            return None;
+        }
+        match self.addresses.len() {
+            1..=ADDRESSES => {
+                Some(format!("nobody answers at {address:#04x}; on the bus: {}", all.join(", ")))
+            }
+            _ => {
+                Some("nobody answers at other addresses either: from now on this is counted, not told".into())
+            }
+        }
     }
 
     /// A driver has turned on something that a chip does not do.
