@@ -1,7 +1,7 @@
 //! The chips of a scene on a bus, as a driver meets them: the scene is what they measure.
 //!
 //! No clock, no I/O and no threads. A [`Board`] plays the scene up to whatever time it is told, hands each chip its
-//! samples, and follows what a driver writes: a new rate, range or filter starts at the sensor's next tick. Until a driver
+//! samples, and follows what a driver writes: a new rate, range or filter holds from the sensor's next sample on. Until a driver
 //! reads a first sample the vehicle is held at rest.
 //!
 //! ```

@@ -140,12 +140,11 @@ impl<'a> Player<'a> {
     }
 
     fn reschedule(&mut self, sensor: usize) {
-        let Segment { from, clock, .. } = self.channels[sensor].now;
-        self.schedule.set(sensor, clock.map(|rate| Ticks { rate, phase: from }));
+        let Segment { from, phase, clock, .. } = self.channels[sensor].now;
+        self.schedule.set(sensor, clock.map(|rate| Ticks { rate, phase }), from);
     }
 
-    /// Sets one of the plan's sensors from its first tick at or after the setting's start on, which is not before what was
-    /// played.
+    /// Sets one of the plan's sensors from the setting's start on, which is not before what was played.
     ///
     /// # Errors
     /// A value that cannot be.

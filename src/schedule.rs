@@ -49,24 +49,28 @@ impl Schedule {
     pub fn new(sensors: impl IntoIterator<Item = Ticks>, end: SimTime) -> Schedule {
         let mut schedule = Schedule { groups: Vec::new(), end };
         for (i, ticks) in sensors.into_iter().enumerate() {
-            schedule.add(i, ticks);
+            schedule.add(i, ticks, SimTime::ZERO);
         }
         schedule
     }
 
-    fn add(&mut self, sensor: usize, ticks: Ticks) {
-        match self.groups.iter_mut().find(|group| group.ticks == ticks && group.k == 0) {
+    fn add(&mut self, sensor: usize, ticks: Ticks, from: SimTime) {
+        let k = ticks.rate.ticks_before(ticks.phase, from);
+        match self.groups.iter_mut().find(|group| group.ticks == ticks && group.k == k) {
             Some(group) => group.sensors |= 1 << sensor,
-            None => self.groups.push(Group { ticks, sensors: 1 << sensor, k: 0, next: ticks.phase }),
+            None => {
+                let next = ticks.phase + ticks.rate.tick(k);
+                self.groups.push(Group { ticks, sensors: 1 << sensor, k, next });
+            }
         }
     }
 
-    /// Gives a sensor other ticks, or none, in the place of those that it would still have.
-    pub fn set(&mut self, sensor: usize, ticks: Option<Ticks>) {
+    /// Gives a sensor other ticks, those due from `from` on, or none, in the place of those that it would still have.
+    pub fn set(&mut self, sensor: usize, ticks: Option<Ticks>, from: SimTime) {
         self.groups.iter_mut().for_each(|group| group.sensors &= !(1 << sensor));
         self.groups.retain(|group| group.sensors != 0);
         if let Some(ticks) = ticks {
-            self.add(sensor, ticks);
+            self.add(sensor, ticks, from);
         }
     }
 
@@ -182,16 +186,33 @@ mod tests {
             times.into_iter().map(|t| t.0).zip(masks).collect::<Vec<_>>()
         };
         assert_eq!(take(&mut schedule, 2_000_000), [(0, 0b111), (1_000_000, 0b011)]);
-        let slower = Ticks { rate: Rate::hz(250), phase: SimTime(2_000_000) };
-        schedule.set(0, Some(slower));
-        schedule.set(2, Some(slower));
+        let (slower, from) = (Ticks { rate: Rate::hz(250), phase: SimTime(2_000_000) }, SimTime(2_000_000));
+        schedule.set(0, Some(slower), from);
+        schedule.set(2, Some(slower), from);
         assert_eq!(schedule.groups.len(), 2);
         assert_eq!(
             take(&mut schedule, 5_000_000),
             [(2_000_000, 0b111), (3_000_000, 0b010), (4_000_000, 0b010)]
         );
-        schedule.set(1, None);
+        schedule.set(1, None, SimTime(5_000_000));
         assert_eq!(take(&mut schedule, 100_000_000), [], "the next of the others is at the end");
         assert_eq!(schedule.next(), None);
+    }
+
+    #[test]
+    fn sensors_that_get_the_same_ticks_at_different_times_tick_together() {
+        // The ticks of this rate are no whole ns, so that counting them from each one's start would part them.
+        let ticks = Ticks { rate: Rate::new(1125, 11).unwrap(), phase: SimTime::ZERO };
+        let mut schedule = Schedule::new([at(1000), at(1000)], SimTime(1_000_000_000));
+        let mut take = |until, set: usize| {
+            schedule.fill(10_000, SimTime(until), &mut Vec::new(), &mut Vec::new());
+            schedule.set(set, Some(ticks), SimTime(until));
+        };
+        take(20_000_000, 0);
+        take(110_000_000, 1);
+        assert_eq!(schedule.groups.len(), 1);
+        let due: Vec<_> = schedule.collect();
+        assert_eq!(due[0], Due { t: ticks.rate.tick(12), sensors: 0b11 });
+        assert!(due.iter().all(|due| due.sensors == 0b11));
     }
 }

@@ -5,7 +5,7 @@ use super::following::Change;
 use super::reads::Reads;
 use crate::player::{Moment, Player};
 use crate::scene::Plan;
-use crate::sensor::{SensorKind, SensorPlan};
+use crate::sensor::SensorPlan;
 use crate::time::SimTime;
 use ratetable_protocols::bridge::Bus;
 use ratetable_protocols::chip::{self, Channel, Samples, Tally, read, write};
@@ -247,6 +247,8 @@ fn hand_over(
     start: SimTime,
     sensors: &[(SensorPlan, Option<Scale>)],
 ) {
+    // The thermometer is the gyro's and the accelerometer's.
+    let is_mag_alone = chip.sensors[..2].iter().all(Option::is_none);
     let mut samples = Samples::default();
     let mut any = false;
     for reading in moment.readings {
@@ -262,7 +264,7 @@ fn hand_over(
             Channel::Accel => samples.accel = counts,
             Channel::Mag => samples.mag = counts,
         }
-        if reading.kind != SensorKind::Mag || samples.temperature_c.is_none() {
+        if channel != Channel::Mag || is_mag_alone {
             samples.temperature_c = Some(reading.temperature);
         }
         any = true;

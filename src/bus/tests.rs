@@ -141,6 +141,62 @@ fn a_scene_without_parts_takes_the_chip_that_is_named() {
 }
 
 #[test]
+fn gyro_and_accel_of_a_chip_sample_together_whenever_each_is_set() {
+    let mut plan = plan(&ROCKING.replace("MPU-9250", "ICM-20948"));
+    let rest = plan.at_rest();
+    let mut board = Board::new(&plan, &rest, fit(&plan.sensors, None).unwrap(), SimTime::ZERO).unwrap();
+    board.begin(SimTime::ZERO);
+    // Out of sleep; in bank 2 both at 1125/11 Hz with a filter, the accelerometer 31.3 ms after the gyro.
+    let writes: [(i64, &[u8]); 5] = [
+        (1_000_000, &[0x06, 0x01]),
+        (2_000_000, &[0x7f, 0x20]),
+        (3_100_000, &[0x00, 10, 0x19]),
+        (34_400_000, &[0x10, 0, 10]),
+        (34_700_000, &[0x14, 0x19]),
+    ];
+    for (t, write) in writes {
+        board.advance(SimTime(t)).unwrap();
+        assert!(board.write(0x68, write, false));
+    }
+    let changes = board.changes().to_vec();
+    drop(board);
+    let rates: Vec<_> = changes.iter().rev().take(2).map(|it| it.setting.rate).collect();
+    assert_eq!(changes.last().unwrap().setting.rate, Rate::new(1125, 11), "{rates:?}");
+    plan.set(changes.iter().map(|it| (it.kind, it.setting.clone(), it.written.clone())));
+    let again = Plan::parse(&plan.resolved, "resolved", "again", &[]).unwrap();
+    let mut moments = 0;
+    let Ok(()) = Player::new(&again, SimTime(NANOS), BLOCK).play(|moment| {
+        let has = |kind| moment.readings.iter().any(|it| it.kind == kind);
+        if moment.t > SimTime(40 * MS) {
+            assert!(has(SensorKind::Gyro) && has(SensorKind::Accel), "{}", moment.t);
+            moments += 1;
+        }
+        Ok::<(), std::convert::Infallible>(())
+    });
+    assert_eq!(moments, 98);
+}
+
+#[test]
+fn a_chips_thermometer_is_that_of_its_gyro_and_not_of_its_magnetometer() {
+    let warm =
+        "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\ntemperature = \"30 degC\"\n[mag]\nrate = \"100 Hz\"\n";
+    let plan = plan(warm);
+    let rest = plan.at_rest();
+    let chips = fit(&plan.sensors, Some("MPU-9250")).unwrap();
+    let mut board = Board::new(&plan, &rest, chips, SimTime::ZERO).unwrap();
+    board.begin(SimTime::ZERO);
+    // 1000/7 Hz, and the magnetometer at 100 Hz by the bypass: it alone has a sample at 10 ms.
+    for write in [[0x1a, 0x03], [0x19, 0x06], [0x37, 0x02]] {
+        assert!(board.write(0x68, &write, false));
+    }
+    assert!(board.write(0x0c, &[0x0a, 0x16], false));
+    board.advance(SimTime(10 * MS)).unwrap();
+    let mut bytes = [0; 2];
+    assert!(board.write(0x68, &[0x41], false) && board.read(0x68, &mut bytes));
+    assert_eq!(i16::from_be_bytes(bytes), (9.0 * 333.87f64).round() as i16);
+}
+
+#[test]
 fn addresses_are_checked_and_chips_that_share_one_are_refused() {
     let one =
         |more: &str| format!("duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\npart = \"MPU-6050\"\n{more}");

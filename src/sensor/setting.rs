@@ -1,6 +1,7 @@
 //! What a sensor is set to while a scene plays: another rate, range or filter, as a driver sets a chip.
 //!
-//! A setting holds from the sensor's first tick at or after its start. That tick is tick 0 of the new rate.
+//! A setting holds from its start on. Whatever its rate, a sensor's ticks are counted from its `phase`: sensors that are set
+//! to one rate one after the other tick together, as those of a chip do, which divides one clock.
 
 use super::{SensorPlan, clock};
 use crate::keys::Values;
@@ -20,8 +21,10 @@ pub struct Setting {
 /// A sensor between two settings.
 #[derive(Clone, Debug)]
 pub struct Segment {
-    /// When tick 0 is due; while it takes no samples, since when.
+    /// Since when; a tick may be due later.
     pub from: SimTime,
+    /// From when its ticks are counted: those from `from` on are its own.
+    pub phase: SimTime,
     /// The rate of its ticks; `None` while it takes no samples.
     pub clock: Option<Rate>,
     /// The sensor as it is then.
@@ -29,32 +32,37 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The first tick at or after `t`; `t` itself where there are no ticks.
-    fn tick_from(&self, t: SimTime) -> SimTime {
-        let next = |clock: Rate| self.from + clock.tick(clock.ticks_before(self.from, t));
-        self.clock.map_or(t, next).max(self.from)
-    }
-
     /// Its ticks before `end`.
     fn ticks_before(&self, end: SimTime) -> u64 {
-        self.clock.map_or(0, |clock| clock.ticks_before(self.from, end))
+        let count = |clock: Rate| {
+            clock.ticks_before(self.phase, end).saturating_sub(clock.ticks_before(self.phase, self.from))
+        };
+        self.clock.map_or(0, count)
+    }
+
+    /// When its tick `k` is due; `from` where there are no ticks.
+    fn tick(&self, k: u64) -> SimTime {
+        let due = |clock: Rate| self.phase + clock.tick(clock.ticks_before(self.phase, self.from) + k);
+        self.clock.map_or(self.from, due)
     }
 
     /// The sensor as it is after a setting: the state of its random numbers is `epoch`.
     pub fn then(&self, setting: &Setting) -> Segment {
-        let from = self.tick_from(setting.start);
+        let from = setting.start.max(self.from);
         // Before its first tick nothing has been drawn.
         let epoch = self.plan.epoch + u32::from(self.ticks_before(from) > 0);
-        let plan = SensorPlan {
+        let mut plan = SensorPlan {
             rate: setting.rate.unwrap_or(self.plan.rate),
-            phase: from,
             values: setting.values.clone(),
             settings: Vec::new(),
             epoch,
             ..self.plan.clone()
         };
         let clock = setting.rate.map(|rate| clock(&plan.values, rate).unwrap_or(rate));
-        Segment { from, clock, plan }
+        let mut next = Segment { from, phase: self.phase, clock, plan: plan.clone() };
+        plan.phase = next.tick(0);
+        next.plan = plan;
+        next
     }
 }
 
@@ -62,10 +70,10 @@ impl SensorPlan {
     /// The sensor before its first setting.
     pub fn first(&self) -> Segment {
         let plan = SensorPlan { settings: Vec::new(), ..self.clone() };
-        Segment { from: self.phase, clock: Some(self.clock()), plan }
+        Segment { from: self.phase, phase: self.phase, clock: Some(self.clock()), plan }
     }
 
-    /// The sensor between its settings, in order of time; those without a tick are left out, but for the last.
+    /// The sensor between its settings, in order of time; of two from the same time on, the second.
     pub fn segments(&self) -> Vec<Segment> {
         let mut all = vec![self.first()];
         for setting in &self.settings {
@@ -76,8 +84,10 @@ impl SensorPlan {
 
     /// Whether all of its ticks are also the other's.
     pub fn ticks_with(&self, other: &SensorPlan) -> bool {
-        let ticks =
-            |plan: &SensorPlan| plan.segments().iter().map(|it| (it.from, it.clock)).collect::<Vec<_>>();
+        let ticks = |plan: &SensorPlan| {
+            let all = plan.by_segment(Segment::ticks_before).into_iter().filter(|(count, _)| *count > 0);
+            all.map(|(count, it)| (count, it.tick(0), it.phase, it.clock)).collect::<Vec<_>>()
+        };
         ticks(self) == ticks(other)
     }
 
@@ -96,7 +106,7 @@ impl SensorPlan {
         let last = segments.len() - 1;
         for (i, (count, segment)) in segments.into_iter().enumerate() {
             match segment.clock {
-                Some(clock) if left < count || i == last => return segment.from + clock.tick(left),
+                Some(_) if left < count || i == last => return segment.tick(left),
                 _ => left -= count.min(left),
             }
         }
@@ -116,7 +126,7 @@ impl SensorPlan {
     }
 }
 
-/// Goes on with a setting; the segment before goes if no tick of it is left.
+/// Goes on with a setting; the segment before goes if it ends where it begins.
 pub fn push(segments: &mut Vec<Segment>, setting: &Setting) {
     let Some(last) = segments.last() else { return };
     let next = last.then(setting);

@@ -22,25 +22,26 @@ fn ticks(plan: &SensorPlan) -> Vec<i64> {
 }
 
 #[test]
-fn a_setting_holds_from_the_next_tick_on_which_begins_the_new_rate() {
+fn a_setting_holds_from_its_start_on_and_ticks_are_counted_from_the_sensors_phase() {
     assert_eq!(ticks(&gyro("")), [0, 10, 20, 30, 40, 50, 60, 70, 80, 90]);
-    assert_eq!(ticks(&gyro(&set("25 ms", "40 Hz"))), [0, 10, 20, 30, 55, 80]);
-    assert_eq!(ticks(&gyro(&set("30 ms", "40 Hz"))), [0, 10, 20, 30, 55, 80]);
+    assert_eq!(ticks(&gyro(&set("25 ms", "40 Hz"))), [0, 10, 20, 25, 50, 75]);
+    assert_eq!(ticks(&gyro(&set("30 ms", "40 Hz"))), [0, 10, 20, 50, 75]);
     assert_eq!(ticks(&gyro(&set("0 s", "40 Hz"))), [0, 25, 50, 75]);
 }
 
 #[test]
 fn of_two_settings_before_one_tick_the_second_holds() {
     let twice = set("21 ms", "10 Hz") + &set("25 ms", "40 Hz");
-    assert_eq!(ticks(&gyro(&twice)), [0, 10, 20, 30, 55, 80]);
-    assert_eq!(gyro(&twice).segments().len(), 2);
+    assert_eq!(ticks(&gyro(&twice)), [0, 10, 20, 25, 50, 75]);
+    let at_once = set("25 ms", "10 Hz") + &set("25 ms", "40 Hz");
+    assert_eq!(gyro(&at_once).segments().len(), 2);
 }
 
 #[test]
-fn off_ends_the_ticks_and_on_begins_them_at_once() {
+fn off_ends_the_ticks_and_on_goes_on_with_them() {
     assert_eq!(ticks(&gyro(&set("25 ms", "off"))), [0, 10, 20]);
-    assert_eq!(ticks(&gyro(&(set("25 ms", "off") + &set("61 ms", "50 Hz")))), [0, 10, 20, 61, 81]);
-    assert_eq!(ticks(&gyro(&(set("0 s", "off") + &set("61 ms", "50 Hz")))), [61, 81]);
+    assert_eq!(ticks(&gyro(&(set("25 ms", "off") + &set("61 ms", "50 Hz")))), [0, 10, 20, 80]);
+    assert_eq!(ticks(&gyro(&(set("0 s", "off") + &set("61 ms", "50 Hz")))), [80]);
 }
 
 #[test]
@@ -53,6 +54,7 @@ fn noise_is_new_after_a_tick_and_not_before_the_first() {
 
 #[test]
 fn sensors_tick_together_only_if_they_are_set_together() {
-    assert!(gyro(&set("25 ms", "40 Hz")).ticks_with(&gyro(&set("30 ms", "40 Hz"))));
+    assert!(gyro(&set("21 ms", "40 Hz")).ticks_with(&gyro(&set("24 ms", "40 Hz"))));
+    assert!(!gyro(&set("25 ms", "40 Hz")).ticks_with(&gyro(&set("30 ms", "40 Hz"))));
     assert!(!gyro(&set("25 ms", "40 Hz")).ticks_with(&gyro("")));
 }

@@ -1,11 +1,13 @@
 //! Published drivers, unmodified, against the emulated chips: each sets its chip up, reads, scales, and must agree with what
-//! the sensing elements were given, within one count. The same function must notice a chip with a flaw.
+//! the sensing elements were given, within one count: with the chip in memory, behind a bridge in memory, and over a pty
+//! with the emulator playing a scene. The same function must notice a chip with a flaw.
 
 mod bench;
 mod bmi088;
 mod bmi160;
 mod bmi2;
 mod bus;
+mod emulated;
 mod flaw;
 mod hal;
 mod icm20948_async;
@@ -15,6 +17,8 @@ mod lsm6dso;
 mod mpu6050;
 mod mpu6050_dmp;
 mod mpu9250;
+mod page;
+mod played_back;
 
 use bench::{Bench, Part, Sensed};
 
@@ -62,12 +66,14 @@ fn something(gyro: f64, accel: f64) -> Sensed {
     }
 }
 
-/// Runs a check with a chip in memory and with the same chip behind an emulated bridge.
+/// Runs a check with a chip in memory, with the same chip behind an emulated bridge, and over a pty with that chip of the
+/// emulator, which plays a scene.
 macro_rules! agrees_everywhere {
-    ($check:path, $part:expr, $chip:expr) => {
+    ($check:path, $part:expr, $chip:expr, $shown:expr) => {
         for (place, verdict) in [
             ("in memory", $check(&$crate::drivers::bench::Memory::new(&$part, Box::new($chip)))),
             ("behind a bridge", $check(&$crate::drivers::bench::Bridged::new(&$part, Box::new($chip)))),
+            ("on a pty", $crate::drivers::emulated::judge(&$part, $shown, |bench| $check(bench))),
         ] {
             if let Err(disagreement) = verdict {
                 panic!("{place}: {disagreement}");

@@ -91,7 +91,8 @@ async fn serve(
     let chips: Vec<String> = fitted.iter().map(ToString::to_string).collect();
     tell(News::Notice(format!("on the bus: {}", chips.join(", "))));
     if !wait_for_driver(task, &mut link, shared, news).await? {
-        return Ok(Served::default());
+        let (to, name) = (task.output.to.to_string(), link.name().to_string());
+        return Ok(Served { to, name, chips, ..Served::default() });
     }
     let granted = Granted::ask(task.cpu);
     granted.refused.iter().for_each(|refused| tell(News::Notice(refused.clone())));

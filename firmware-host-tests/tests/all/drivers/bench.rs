@@ -1,5 +1,5 @@
 //! Where a driver is tested: a bus with a chip, its time, and what the chip senses. In memory the time is virtual and goes
-//! on only while a driver waits; a bench over a pty needs the same four functions.
+//! on only while a driver waits. [`Emulated`](super::emulated::Emulated) has the same functions in real time.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -38,21 +38,63 @@ pub trait Bench {
     /// Lets so many ns pass.
     fn wait(&self, ns: u64);
 
-    /// What is sensed from now on.
-    fn show(&self, sensed: Sensed);
+    /// What is sensed from now on: this where the bench can choose, else what its scene has. Gives back what it is.
+    fn show(&self, sensed: Sensed) -> Sensed;
 
-    /// How the chip is set, where the bench can see that.
-    fn setting(&self, channel: Channel) -> Option<Setting>;
+    /// That a channel is set like this: now, or by the record of the run when it is over.
+    fn is_set_as(&self, wanted: Wanted) -> Verdict;
+
+    /// Whether time stands still between two transfers. Where it does not, a sample may come between any two.
+    const STANDS_STILL: bool;
 
     /// Waits for the next sample of every channel.
     fn next(&self) {
         self.wait(200_000_000);
     }
 
-    /// That a channel is set like this, where the bench can see that.
+    /// That a channel has this rate, range and filter.
     fn is_set(&self, channel: Channel, rate: (u32, u32), range: u8, filter: &'static str) -> Verdict {
-        let wanted = Setting { rate: Some(rate), range, filter: Some(filter) };
-        self.setting(channel).map_or(Ok(()), |setting| equal("setting", setting, wanted))
+        self.is_set_as(Wanted { channel, rate: Some(rate), range: range.into(), filter: Some(filter) })
+    }
+
+    /// That something becomes so at a look: at the first where time stands still, at one of many where it does not.
+    fn comes_to<T: PartialEq + std::fmt::Debug>(
+        &self,
+        what: &str,
+        truth: T,
+        mut look: impl FnMut() -> Result<T, String>,
+    ) -> Verdict {
+        let mut looks = if Self::STANDS_STILL { 1 } else { 1000 };
+        loop {
+            let read = look()?;
+            looks -= 1;
+            if looks == 0 || read == truth {
+                return equal(what, read, truth);
+            }
+        }
+    }
+
+    /// That so many have come since a wait of just so long: at least, where the wait is longer.
+    fn counts(&self, what: &str, read: usize, truth: usize) -> Verdict {
+        if Self::STANDS_STILL || read < truth { equal(what, read, truth) } else { Ok(()) }
+    }
+}
+
+/// How a driver is to have set a channel. `None` is not looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    pub channel: Channel,
+    pub rate: Option<(u32, u32)>,
+    pub range: usize,
+    pub filter: Option<&'static str>,
+}
+
+impl Wanted {
+    fn is(&self, set: Option<Setting>) -> Verdict {
+        let set = set.ok_or_else(|| format!("no {:?}", self.channel))?;
+        equal("range", usize::from(set.range), self.range)?;
+        equal("rate", self.rate.and(set.rate), self.rate)?;
+        equal("filter", self.filter.and(set.filter), self.filter)
     }
 }
 
@@ -141,12 +183,15 @@ impl Bench for Memory {
         self.0.borrow_mut().pass(ns);
     }
 
-    fn show(&self, sensed: Sensed) {
+    const STANDS_STILL: bool = true;
+
+    fn show(&self, sensed: Sensed) -> Sensed {
         self.0.borrow_mut().sensed = sensed;
+        sensed
     }
 
-    fn setting(&self, channel: Channel) -> Option<Setting> {
-        self.0.borrow().chip.setting(channel)
+    fn is_set_as(&self, wanted: Wanted) -> Verdict {
+        wanted.is(self.0.borrow().chip.setting(wanted.channel))
     }
 }
 
@@ -200,11 +245,13 @@ impl Bench for Bridged {
         self.memory.wait(ns);
     }
 
-    fn show(&self, sensed: Sensed) {
-        self.memory.show(sensed);
+    const STANDS_STILL: bool = true;
+
+    fn show(&self, sensed: Sensed) -> Sensed {
+        self.memory.show(sensed)
     }
 
-    fn setting(&self, channel: Channel) -> Option<Setting> {
-        self.memory.setting(channel)
+    fn is_set_as(&self, wanted: Wanted) -> Verdict {
+        self.memory.is_set_as(wanted)
     }
 }

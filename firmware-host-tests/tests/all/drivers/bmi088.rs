@@ -4,10 +4,11 @@
 use ::bmi088::Builder;
 use ratetable_protocols::chip::{Channel, bmi088::Bmi088};
 
-use super::bench::Part;
+use super::bench::{Part, Wanted};
+use super::emulated::turning;
 use super::flaw::{Flaw, Flawed};
 use super::hal::{Delay, Spi};
-use super::{Bench, Verdict, agrees, agrees_everywhere, equal, notices, something, told};
+use super::{Bench, Verdict, agrees, agrees_everywhere, notices, something, told};
 
 /// Counts a deg/s by range, ±125 deg/s first, and counts a g, ±3 g first (BST-BMI088-DS001, tables 2 and 3).
 const GYRO: [f64; 5] = [262.144, 131.072, 65.536, 32.768, 16.384];
@@ -22,23 +23,21 @@ fn check(bench: &impl Bench) -> Verdict {
     for (dps, range) in [(2000, 4), (1000, 3)] {
         gyro.set_range(dps).map_err(told("gyro range"))?;
         // The driver cannot set the accelerometer's range: ±6 g after a reset.
-        let sensed = something(GYRO[range], ACCEL[1]);
-        bench.show(sensed);
+        let sensed = bench.show(something(GYRO[range], ACCEL[1]));
         bench.next();
         let read = gyro.get_gyro().map_err(told("read gyro"))?.map(|it| f64::from(it) / GYRO[range]);
         agrees("gyro", read, sensed.gyro_dps, GYRO[range])?;
         let read = accel.get_accel().map_err(told("read accel"))?.map(|it| f64::from(it) / ACCEL[1]);
         agrees("accel", read, sensed.accel_g, ACCEL[1])?;
         // Asked for 1000 Hz the driver sets 2000 Hz with 230 Hz, and the other way round.
-        let set = bench.setting(Channel::Gyro).map(|it| (it.rate, usize::from(it.range)));
-        equal("setting", set.unwrap_or((Some((2000, 1)), range)), (Some((2000, 1)), range))?;
+        bench.is_set_as(Wanted { channel: Channel::Gyro, rate: Some((2000, 1)), range, filter: None })?;
     }
     Ok(())
 }
 
 #[test]
 fn a_bmi088_reads_as_its_driver_expects() {
-    agrees_everywhere!(check, PART, Bmi088::new(0x18, 0x68));
+    agrees_everywhere!(check, PART, Bmi088::new(0x18, 0x68), turning("BMI088"));
 }
 
 #[test]

@@ -6,7 +6,8 @@ use ::bmi160::{
 };
 use ratetable_protocols::chip::{Channel, bmi160};
 
-use super::bench::Part;
+use super::bench::{Part, Wanted};
+use super::emulated::turning;
 use super::flaw::{Flaw, Flawed};
 use super::hal::Hal;
 use super::{ACCEL, Bench, Verdict, agrees, agrees_everywhere, equal, notices, something, told};
@@ -35,8 +36,7 @@ fn check(bench: &impl Bench) -> Verdict {
         let accel = range % accels.len();
         bmi.set_gyro_range(gyro).map_err(told("gyro"))?;
         bmi.set_accel_range(accels[accel]).map_err(told("accel"))?;
-        let sensed = something(GYRO[range], ACCEL[accel]);
-        bench.show(sensed);
+        let sensed = bench.show(something(GYRO[range], ACCEL[accel]));
         bench.next();
         let status = bmi.status().map_err(told("status"))?;
         equal("ready", (status.gyro_data_ready, status.accel_data_ready), (true, true))?;
@@ -44,17 +44,19 @@ fn check(bench: &impl Bench) -> Verdict {
         let (Some(gyro), Some(acc)) = (read.gyro, read.accel) else { return Err("no data".into()) };
         agrees("gyro", [gyro.x, gyro.y, gyro.z].map(f64::from), sensed.gyro_dps, GYRO[range])?;
         agrees("accel", [acc.x, acc.y, acc.z].map(f64::from), sensed.accel_g, ACCEL[accel])?;
-        let status = bmi.status().map_err(told("status"))?;
-        equal("ready after reading", (status.gyro_data_ready, status.accel_data_ready), (false, false))?;
-        let set = bench.setting(Channel::Gyro).map(|it| (it.rate, usize::from(it.range)));
-        equal("setting", set.unwrap_or((Some((100, 1)), range)), (Some((100, 1)), range))?;
+        bench.comes_to("ready after reading", (false, false), || {
+            bmi.data(SensorSelector::new().gyro().accel()).map_err(told("read"))?;
+            let status = bmi.status().map_err(told("status"))?;
+            Ok((status.gyro_data_ready, status.accel_data_ready))
+        })?;
+        bench.is_set_as(Wanted { channel: Channel::Gyro, rate: Some((100, 1)), range, filter: None })?;
     }
     Ok(())
 }
 
 #[test]
 fn a_bmi160_reads_as_its_driver_scales_it() {
-    agrees_everywhere!(check, PART, bmi160::Bmi160::new(0x69));
+    agrees_everywhere!(check, PART, bmi160::Bmi160::new(0x69), turning("BMI160").at(0x69));
 }
 
 #[test]

@@ -4,7 +4,8 @@ use ::bmi2::types::{AccRange, Burst, GyrRange, GyrRangeVal, OisRange, PwrCtrl};
 use ::bmi2::{Bmi2, I2cAddr, config};
 use ratetable_protocols::chip::{Channel, bmi270::Bmi270};
 
-use super::bench::Part;
+use super::bench::{Part, Wanted};
+use super::emulated::turning;
 use super::flaw::{Flaw, Flawed};
 use super::hal::{Delay, Hal};
 use super::{ACCEL, Bench, Verdict, agrees, agrees_everywhere, equal, notices, something, told};
@@ -36,8 +37,7 @@ fn check(bench: &impl Bench) -> Verdict {
         };
         bmi.set_gyr_range(GyrRange { range: gyro, ois_range: OisRange::Range250 }).map_err(told("gyro"))?;
         bmi.set_acc_range(accel_range).map_err(told("accel"))?;
-        let sensed = something(GYRO[range], ACCEL[accel]);
-        bench.show(sensed);
+        let sensed = bench.show(something(GYRO[range], ACCEL[accel]));
         bench.next();
         let status = bmi.get_status().map_err(told("status"))?;
         equal("ready", (status.gyr_data_ready, status.acc_data_ready), (true, true))?;
@@ -47,17 +47,20 @@ fn check(bench: &impl Bench) -> Verdict {
         };
         agrees("gyro", counts(read.gyr, GYRO[range]), sensed.gyro_dps, GYRO[range])?;
         agrees("accel", counts(read.acc, ACCEL[accel]), sensed.accel_g, ACCEL[accel])?;
-        let status = bmi.get_status().map_err(told("status"))?;
-        equal("ready after reading", (status.gyr_data_ready, status.acc_data_ready), (false, false))?;
-        let set = bench.setting(Channel::Gyro).map(|it| usize::from(it.range));
-        equal("range", set.unwrap_or(range), range)?;
+        bench.comes_to("ready after reading", (false, false), || {
+            bmi.get_data().map_err(told("read"))?;
+            let status = bmi.get_status().map_err(told("status"))?;
+            Ok((status.gyr_data_ready, status.acc_data_ready))
+        })?;
+        bench.is_set_as(Wanted { channel: Channel::Gyro, rate: None, range, filter: None })?;
+        bench.is_set_as(Wanted { channel: Channel::Accel, rate: None, range: accel, filter: None })?;
     }
     Ok(())
 }
 
 #[test]
 fn a_bmi270_takes_its_upload_and_reads_as_its_driver_expects() {
-    agrees_everywhere!(check, PART, Bmi270::new(0x68));
+    agrees_everywhere!(check, PART, Bmi270::new(0x68), turning("BMI270"));
 }
 
 #[test]

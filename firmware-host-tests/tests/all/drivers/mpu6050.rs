@@ -4,6 +4,7 @@ use ::mpu6050::Mpu6050;
 use ::mpu6050::device::{AccelRange, GyroRange};
 use ratetable_protocols::chip::{Channel, mpu::Mpu};
 
+use super::emulated::turning;
 use super::flaw::{Flaw, Flawed};
 use super::hal::{Delay, Hal};
 use super::{ACCEL, Bench, GYRO, TDK, Verdict, agrees, agrees_everywhere, notices, something, told};
@@ -20,8 +21,7 @@ fn check(bench: &impl Bench) -> Verdict {
     for (range, (gyro, accel)) in ranges.into_iter().enumerate() {
         mpu.set_gyro_range(gyro).map_err(told("gyro"))?;
         mpu.set_accel_range(accel).map_err(told("accel"))?;
-        let sensed = something(GYRO[range], ACCEL[range]);
-        bench.show(sensed);
+        let sensed = bench.show(something(GYRO[range], ACCEL[range]));
         bench.next();
         let read = mpu.get_gyro().map_err(told("read gyro"))?;
         let read = [read.x, read.y, read.z].map(|it| f64::from(it).to_degrees());
@@ -37,7 +37,7 @@ fn check(bench: &impl Bench) -> Verdict {
 
 #[test]
 fn an_mpu6050_reads_as_its_driver_scales_it() {
-    agrees_everywhere!(check, TDK, Mpu::mpu6050(0x68));
+    agrees_everywhere!(check, TDK, Mpu::mpu6050(0x68), turning("MPU-6050"));
 }
 
 #[test]
