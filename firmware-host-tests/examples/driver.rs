@@ -1,5 +1,7 @@
 //! A published driver, unmodified, on a bus of the emulator: `ratetable run … --to bus@pty -- driver {}`.
 
+#![allow(clippy::print_stdout, reason = "an example's readings")]
+
 use std::env;
 use std::error::Error;
 use std::fs::File;
