@@ -158,7 +158,7 @@ fn kind_of(sensor: &SensorPlan, channel: Channel, chip: Option<&str>) -> Result<
     let kind = sensor.kind;
     let Some(part) = sensor.part.or(chip) else {
         return Err(format!(
-            "[{kind}] has no part, so there is no chip for it on a bus: give it one, such as part = \"MPU-9250\", or give all of them `chip = \"MPU-9250\"` in [[output]], --set output.0.chip=… for registers without that part's errors"
+            "[{kind}] has no part, so there is no chip for it on a bus: give it one, such as part = \"MPU-9250\", or give all of them registers without that part's errors with `chip = \"MPU-9250\"` in [[output]]: --set 'output=[{{to=\"bus@pty\",chip=\"MPU-9250\"}}]' in place of --to"
         ));
     };
     let has = |it: &&ChipKind| it.has(channel);
