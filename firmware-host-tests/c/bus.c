@@ -1,5 +1,5 @@
-/* Firmware (b): reads a chip over an I2C bridge on UART0, 200 times a second by its own clock, and tells MAVLink's
- * ATTITUDE on UART1 with that clock. */
+/* Firmware (b): reads a chip over an I2C bridge on UART0, by its own clock, and tells MAVLink's ATTITUDE on UART1 with
+ * that clock. It asks the driver 200 times a second. */
 #include "board.h"
 #include "estimator.h"
 #include "imu.h"
@@ -43,7 +43,9 @@ static int find_bridge(rt_bus *bus) {
     return 0;
 }
 
-static void take(uint64_t t_us, struct imu_sample *s) {
+static void take(uint64_t read_us, struct imu_sample *s) {
+    static uint64_t t_us;
+    t_us = s->period_us > 0 ? t_us + s->period_us : read_us;
     rt_flip_yz(s->rate);
     rt_flip_yz(s->force);
     rt_flip_yz(s->field);
@@ -62,9 +64,12 @@ static void run(rt_bus *bus) {
         board_wait_until(due_us);
         t_us = board_now_us();
         due_us = t_us - due_us > PERIOD_US ? t_us + PERIOD_US : due_us + PERIOD_US; /* what is late is left out */
-        if (imu_read(bus, &sample) <= 0) continue;
-        heard_us = board_now_us();
-        take(t_us, &sample);
+        do {
+            memset(&sample, 0, sizeof sample);
+            if (imu_read(bus, &sample) <= 0) break;
+            heard_us = board_now_us();
+            take(t_us, &sample);
+        } while (sample.has_more);
     }
 }
 

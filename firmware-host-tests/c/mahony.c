@@ -43,6 +43,7 @@ void mahony_start(struct mahony *m, const float rate[3], const float force[3], c
     if (hypotf(north, east) > 0) from_euler(roll, pitch, declination - atan2f(east, north), m->q);
     for (i = 0; i < 3; i++) {
         m->bias[i] = rate[i];
+        m->before[i] = rate[i];
         m->level[i] = 0;
         m->north[i] = 0;
     }
@@ -50,7 +51,8 @@ void mahony_start(struct mahony *m, const float rate[3], const float force[3], c
 
 void mahony_accel(struct mahony *m, const float force[3]) {
     const float strength = norm(force);
-    const int believed = fabsf(strength / G - 1) < MAHONY_G_SHARE;
+    const float rate[3] = {m->before[0] - m->bias[0], m->before[1] - m->bias[1], m->before[2] - m->bias[2]};
+    const int believed = fabsf(strength / G - 1) < MAHONY_G_SHARE && norm(rate) < MAHONY_RATE_MOST;
     const float scale = believed ? -1 / strength : 0; /* down is against the force */
     float r[3][3];
     matrix(m->q, r);
@@ -70,14 +72,23 @@ void mahony_mag(struct mahony *m, const float field[3], float declination) {
     for (i = 0; i < 3; i++) m->north[i] = horizontal > 0 ? across / horizontal * r[2][i] : 0;
 }
 
+/* Over a step the rate goes evenly from the reading before to this one. The turn is then their mean and, for an axis that
+ * turns as well, a twelfth of their cross product: the first terms of the Magnus series. */
 void mahony_gyro(struct mahony *m, const float rate[3], float dt_s) {
     const float w = m->q[0], x = m->q[1], y = m->q[2], z = m->q[3];
-    float turn[3], half, s, c, length;
+    float turn[3], from[3], to[3], half, s, c, length;
     int i;
     for (i = 0; i < 3; i++) {
+        from[i] = m->before[i] - m->bias[i];
+        to[i] = rate[i] - m->bias[i];
+        m->before[i] = rate[i];
+    }
+    for (i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
         const float e = MAHONY_K_ACC * m->level[i] + MAHONY_K_MAG * m->north[i];
+        const float cone = (from[j] * to[k] - from[k] * to[j]) * dt_s / 12;
         m->bias[i] -= MAHONY_K_I * e * dt_s;
-        turn[i] = (rate[i] - m->bias[i] + e) * dt_s;
+        turn[i] = ((from[i] + to[i]) / 2 + cone + e) * dt_s;
     }
     half = norm(turn) / 2;
     s = half > 0 ? sinf(half) / (2 * half) : 0.5f;

@@ -11,6 +11,7 @@
 struct mahony {
     float q[4];    /* w, x, y, z: body (forward-right-down) to nav (north-east-down) */
     float bias[3]; /* of the gyro, rad/s */
+    float before[3]; /* its newest reading, rad/s */
     float level[3], north[3]; /* v x v^ and m x m^ of the newest readings */
 };
 
@@ -20,8 +21,10 @@ struct mahony {
 #define MAHONY_K_MAG 0.3f
 #define MAHONY_K_I 0.001f
 
-/* An accelerometer is believed within this part of 1 g. */
+/* An accelerometer is believed within this part of 1 g, and while the vehicle turns slower than this, rad/s: in a turn
+ * that is flown as turns are it reads as if level. */
 #define MAHONY_G_SHARE 0.05f
+#define MAHONY_RATE_MOST 0.2f
 
 /* Begins at rest with means of all three sensors: rad/s, m/s^2, any unit; a field of zero is none, and north is ahead.
  * Declination in rad, positive east. */

@@ -14,5 +14,5 @@ void telemetry_send(const struct estimator *e) {
         board_write(BOARD_TELEMETRY, out, mavlink_heartbeat(out, seq++));
     }
     mahony_euler(&e->filter, euler);
-    board_write(BOARD_TELEMETRY, out, mavlink_attitude(out, seq++, (uint32_t)(e->t_us / 1000u), euler, e->rate));
+    board_write(BOARD_TELEMETRY, out, mavlink_attitude(out, seq++, (uint32_t)(e->t_us / 1000u), euler, e->newest));
 }

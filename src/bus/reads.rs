@@ -10,31 +10,42 @@ pub struct Reads {
     pub tally: Tally,
     /// When samples were read first and last, and how many came with the first read.
     span: Option<(SimTime, SimTime, u64)>,
-    /// What was counted before the scene.
-    before: Tally,
+    /// What was counted when this was looked at last.
+    seen: Tally,
+    /// Samples from before the scene that wait in the chip: what comes of them first is not counted.
+    old: u64,
 }
 
 impl Reads {
     /// Counts from here on.
     pub(super) fn begin(&mut self, now: Tally) {
-        *self = Reads { before: now, ..Reads::default() };
+        *self = Reads { seen: now, old: waiting(now), ..Reads::default() };
     }
 
     /// Takes the chip's counts at a time of the scene.
     pub(super) fn look(&mut self, t: SimTime, now: Tally) {
         let since = |now: u64, before: u64| now.saturating_sub(before);
-        let tally = Tally {
-            made: since(now.made, self.before.made),
-            read: since(now.read, self.before.read),
-            again: since(now.again, self.before.again),
-            missed: since(now.missed, self.before.missed),
-            overflowed: since(now.overflowed, self.before.overflowed),
+        // Samples leave a chip in order, so that those from before the scene leave it first.
+        let mut leave = |now: u64, before: u64| {
+            let left = since(now, before);
+            let old = left.min(self.old);
+            self.old -= old;
+            left - old
         };
-        if tally.read > self.tally.read {
+        let read = leave(now.read, self.seen.read);
+        let missed = leave(now.missed, self.seen.missed);
+        let overflowed = leave(now.overflowed, self.seen.overflowed);
+        let tally = &mut self.tally;
+        tally.made += since(now.made, self.seen.made);
+        tally.read += read;
+        tally.again += since(now.again, self.seen.again);
+        tally.missed += missed;
+        tally.overflowed += overflowed;
+        if read > 0 {
             let (first, _, with_first) = self.span.unwrap_or((t, t, tally.read));
             self.span = Some((first, t, with_first));
         }
-        self.tally = tally;
+        self.seen = now;
     }
 
     /// Samples read a second, from the first read to the last; `None` of fewer than two reads.
@@ -44,9 +55,12 @@ impl Reads {
         (span > 0.0).then(|| (self.tally.read - with_first) as f64 / span)
     }
 
-    /// Samples that wait in the chip.
+    /// Samples of the scene that wait in the chip.
     pub fn waiting(&self) -> u64 {
-        let Tally { made, read, missed, overflowed, .. } = self.tally;
-        made.saturating_sub(read + missed + overflowed)
+        waiting(self.tally)
     }
+}
+
+fn waiting(Tally { made, read, missed, overflowed, .. }: Tally) -> u64 {
+    made.saturating_sub(read + missed + overflowed)
 }

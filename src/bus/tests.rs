@@ -128,6 +128,31 @@ fn the_vehicle_rests_on_after_a_first_read_if_that_is_asked() {
 }
 
 #[test]
+fn samples_from_before_the_scene_that_wait_in_a_fifo_are_not_the_scenes() {
+    let plan = plan(ROCKING);
+    let rest = plan.at_rest();
+    let mut board = Board::new(&plan, &rest, fit(&plan.sensors, None).unwrap(), SimTime(NANOS)).unwrap();
+    set_up(&mut board);
+    board.write(0x68, &[0x23, 0x78], false);
+    board.write(0x68, &[0x6a, 0x44], false);
+    board.advance(SimTime(100 * MS)).unwrap();
+    burst(&mut board);
+    board.advance(SimTime(1050 * MS)).unwrap();
+    board.write(0x68, &[0x6a, 0x44], false);
+    // Ten more come at rest, and twenty in the scene; it is read to the end.
+    for k in 0..5 {
+        board.advance(SimTime(1202 * MS)).unwrap();
+        board.write(0x68, &[0x74], false);
+        assert!(board.read(0x68, &mut [0; 72]), "{k}");
+    }
+    for reads in &board.reads()[..2] {
+        let tally = reads.tally;
+        assert!(tally.made >= 20 && reads.waiting() <= 1, "{tally:?}");
+        assert_eq!(tally.made, tally.read + tally.missed + tally.overflowed + reads.waiting(), "{tally:?}");
+    }
+}
+
+#[test]
 fn a_scene_without_parts_takes_the_chip_that_is_named() {
     let bare = "duration = \"1 s\"\n[gyro]\nrate = \"1 kHz\"\n[accel]\nrate = \"1 kHz\"\n";
     assert!(refused(bare, None).contains("[gyro] has no part"));

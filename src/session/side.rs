@@ -48,7 +48,7 @@ pub(super) struct Side {
     /// Whether a controller of its make answers while the scene is played.
     must_answer: bool,
     /// Whether nothing is sent to it.
-    is_mute: bool,
+    pub is_mute: bool,
     /// Whether it can know its heading.
     has_heading: bool,
     lockstep: bool,

@@ -160,10 +160,12 @@ impl Talk {
         self.sides.iter().any(|side| !side.estimates.is_empty())
     }
 
-    /// Judges the estimates of the side that sent most, for a scene that played up to `played`.
+    /// Judges the estimates of the side on which an attitude is only heard, or else that sent most, for a scene that played up to `played`.
     pub(super) fn judge(&self, judging: Judging, played: SimTime) -> Judgement {
-        let most = self.sides.iter().rev().map(|side| &side.estimates).max_by_key(|said| said.len());
-        let most = most.filter(|said| !said.is_empty());
+        let told = |side: &&Side| !side.estimates.is_empty();
+        let sides = self.sides.iter().rev().filter(told);
+        // Where an attitude is heard apart, that one is asked for.
+        let most = sides.max_by_key(|side| (side.is_mute, side.estimates.len())).map(|side| &side.estimates);
         most.map_or_else(Judgement::default, |said| self.heard.judge(said, judging, played))
     }
 }

@@ -162,7 +162,7 @@ impl Icm20948 {
 
     fn write_user_control(&mut self, t_ns: u64, value: u8) {
         if value & 0x02 != 0 {
-            self.external = External::default();
+            self.external.reset();
         }
         // DMP_RST, SRAM_RST and I2C_MST_RST clear themselves.
         self.set(USER_CTRL, value & !0x0e);
@@ -208,7 +208,8 @@ impl Icm20948 {
     fn run_slaves(&mut self, t_ns: u64) {
         if self.has_master() {
             let slaves = [0, 1, 2, 3].map(|i| self.slave(i));
-            self.master_status |= self.external.run(t_ns, &slaves, Some(&mut self.aux));
+            let queued = self.fifo_takes_slaves();
+            self.master_status |= self.external.run(t_ns, &slaves, queued, Some(&mut self.aux));
         }
     }
 

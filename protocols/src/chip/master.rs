@@ -1,7 +1,8 @@
 //! The I²C master inside an MPU or ICM: what it copies from the magnetometer at each sample, and single transfers.
 
 use super::ak::{self, Ak};
-use super::{Registers, read, write};
+use super::fifo::Frame;
+use super::{Channel, Registers, read, write};
 
 /// One of the four slaves that are read or written at each sample.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,15 +23,25 @@ pub(super) struct External {
     pub len: usize,
     /// Where the magnetometer's low byte of x is.
     mag: Option<usize>,
+    /// Whether that sample is new since the transfer before.
+    is_new: bool,
     /// The copy of its sample, for counting what the driver reads.
     copy: super::Latest,
 }
 
 impl External {
-    /// Lets each enabled slave transfer, at time `t_ns`; gives back bit i where slave i did not acknowledge.
-    pub fn run(&mut self, t_ns: u64, slaves: &[Slave; 4], mut aux: Option<&mut Ak>) -> u8 {
+    /// As after the master's reset; what was counted stays.
+    pub fn reset(&mut self) {
+        let mut copy = self.copy;
+        copy.clear();
+        *self = External { copy, ..External::default() };
+    }
+
+    /// Lets each enabled slave transfer, at time `t_ns`; gives back bit i where slave i did not acknowledge. Bit i of `queued`
+    /// is whether the FIFO takes what slave i reads.
+    pub fn run(&mut self, t_ns: u64, slaves: &[Slave; 4], queued: u8, mut aux: Option<&mut Ak>) -> u8 {
         let (mut missing, mut at) = (0, 0);
-        self.mag = None;
+        (self.mag, self.is_new) = (None, false);
         for (i, slave) in slaves.iter().enumerate().filter(|(_, slave)| slave.control & 0x80 != 0) {
             let len = usize::from(slave.control & 0x0f).min(self.bytes.len() - at);
             let Some(aux) = aux.as_deref_mut().filter(|_| slave.address & 0x7f == ak::ADDRESS) else {
@@ -43,7 +54,7 @@ impl External {
                 continue;
             }
             let register = if slave.control & 0x20 == 0 { slave.register } else { *aux.pointer() };
-            self.copy_from(aux, t_ns, register, at..at + len);
+            self.copy_from(aux, t_ns, register, at..at + len, queued & 1 << i != 0);
             if slave.control & 0x40 != 0 {
                 swap(&mut self.bytes[at..at + len], slave.control & 0x10 != 0);
             }
@@ -53,7 +64,14 @@ impl External {
         missing
     }
 
-    fn copy_from(&mut self, aux: &mut Ak, t_ns: u64, register: u8, to: core::ops::Range<usize>) {
+    fn copy_from(
+        &mut self,
+        aux: &mut Ak,
+        t_ns: u64,
+        register: u8,
+        to: core::ops::Range<usize>,
+        queued: bool,
+    ) {
         let before = aux.latest().tally;
         write(aux, t_ns, &[register], false);
         read(aux, t_ns, &mut self.bytes[to.clone()]);
@@ -66,8 +84,23 @@ impl External {
         let copied = latest.tally.read > before.read;
         latest.tally = super::Tally { read: before.read, again: before.again, ..latest.tally };
         if copied {
-            self.copy.put(latest.counts, false);
+            self.copy.put(latest.counts, queued && data + 6 <= to.len());
+            self.is_new = true;
         }
+    }
+
+    /// Adds some of its bytes to what enters the FIFO.
+    pub fn add_to(&self, frame: &mut Frame, bytes: core::ops::Range<usize>) {
+        let end = self.mag.map(|mag| mag + 6).filter(|&end| bytes.start + 6 <= end && end <= bytes.end);
+        let split = end.unwrap_or(bytes.start);
+        frame.add(&self.bytes[bytes.start..split]);
+        frame.is_sample(Channel::Mag, 6, self.is_new && end.is_some());
+        frame.add(&self.bytes[split..bytes.end]);
+    }
+
+    /// What became of the magnetometer's samples in the FIFO.
+    pub const fn tally_of_fifo(&mut self) -> &mut super::Tally {
+        &mut self.copy.tally
     }
 
     /// Byte `i` as a driver reads it.

@@ -86,6 +86,8 @@ pub struct Mpu {
     master_status: u8,
     aux: Option<Ak>,
     external: External,
+    /// Whether the accelerometer has taken a sample since the last that entered the FIFO.
+    accel_is_new: bool,
     fifo: Fifo<1024>,
     /// The last byte that left the FIFO: what an empty one reads.
     last: u8,
@@ -121,6 +123,7 @@ impl Mpu {
             master_status: 0,
             aux,
             external: External::default(),
+            accel_is_new: false,
             fifo: Fifo::new(),
             last: 0,
             memory: [0; 4096],
@@ -133,8 +136,7 @@ impl Mpu {
     fn power_on(&mut self) {
         self.registers = [0; 128];
         self.registers[usize::from(PWR_MGMT_1)] = if self.model == Model::Mpu9250 { 0x01 } else { SLEEP };
-        self.gyro.clear();
-        self.accel.clear();
+        self.reset_signals();
         self.empty_fifo();
         self.celsius = 25.0;
         (self.status, self.master_status) = (0, 0);
@@ -171,7 +173,7 @@ impl Mpu {
             self.empty_fifo();
         }
         if value & 0x02 != 0 {
-            self.external = External::default();
+            self.external.reset();
         }
         if value & 0x01 != 0 {
             self.reset_signals();
@@ -184,6 +186,7 @@ impl Mpu {
     fn reset_signals(&mut self) {
         self.gyro.clear();
         self.accel.clear();
+        self.accel.tally.missed += u64::from(core::mem::take(&mut self.accel_is_new));
     }
 
     /// A transfer of slave 4 that waits to be made, as soon as the master runs.
@@ -214,7 +217,8 @@ impl Mpu {
             Slave { address: at(0), register: at(1), control: at(2), out: self.of(I2C_SLV0_DO + i) }
         };
         let slaves = [0, 1, 2, 3].map(slave);
-        self.master_status |= self.external.run(t_ns, &slaves, self.aux.as_mut());
+        let queued = if self.fifo_takes(Channel::Mag) { 0x0f } else { 0 };
+        self.master_status |= self.external.run(t_ns, &slaves, queued, self.aux.as_mut());
     }
 
     /// A sample's counts with the driver's offset: `step` counts at the smallest full scale a unit of the register.
@@ -347,11 +351,16 @@ impl Chip for Mpu {
             self.gyro.put(self.with_gyro_offset(counts), self.fifo_takes(Channel::Gyro));
         }
         if let Some(counts) = accel {
-            self.accel.put(self.with_accel_offset(counts), is_frame && self.fifo_takes(Channel::Accel));
+            let queued = self.fifo_takes(Channel::Accel);
+            // One that a newer one replaces before the gyro's next sample enters no FIFO.
+            self.accel.tally.missed += u64::from(self.accel_is_new);
+            self.accel.put(self.with_accel_offset(counts), queued);
+            self.accel_is_new = queued;
         }
         if is_frame {
             self.run_slaves(t_ns);
-            self.push_frame(gyro.is_some(), accel.is_some());
+            let with_accel = core::mem::take(&mut self.accel_is_new);
+            self.push_frame(gyro.is_some(), with_accel);
             self.status |= DATA_READY;
         }
     }

@@ -32,6 +32,11 @@ impl Icm20948 {
         self.fifo_is_on() && self.of(FIFO_EN_2) & bits == bits
     }
 
+    /// Bit i is whether it takes what slave i reads.
+    pub(super) fn fifo_takes_slaves(&self) -> u8 {
+        if self.fifo_is_on() { self.of(FIFO_EN_1) & 0x0f } else { 0 }
+    }
+
     /// Puts what FIFO_EN_1 and FIFO_EN_2 select of the newest sample there, in the order of the registers. `gyro` and `accel`
     /// are whether the channel's sample is new: a slower one is repeated.
     pub(super) fn push_frame(&mut self, gyro: bool, accel: bool) {
@@ -67,7 +72,7 @@ impl Icm20948 {
             }
             let to = (from + usize::from(slave.control & 0x0f)).min(self.external.bytes.len());
             if self.of(FIFO_EN_1) & (1 << i) != 0 {
-                frame.add(&self.external.bytes[from..to]);
+                self.external.add_to(frame, from..to);
             }
             from = to;
         }
@@ -81,6 +86,7 @@ impl Icm20948 {
             self.status[OVERFLOW] |= 0x01;
             self.gyro.tally.overflowed += lost.samples[Channel::Gyro as usize];
             self.accel.tally.overflowed += lost.samples[Channel::Accel as usize];
+            self.external.tally_of_fifo().overflowed += lost.samples[Channel::Mag as usize];
         }
     }
 
@@ -96,6 +102,7 @@ impl Icm20948 {
         let ended = self.fifo.clear();
         self.gyro.tally.missed += ended[Channel::Gyro as usize];
         self.accel.tally.missed += ended[Channel::Accel as usize];
+        self.external.tally_of_fifo().missed += ended[Channel::Mag as usize];
     }
 
     /// The oldest byte. Assumed: an empty one reads 0xff, as that of the ICM-20690 (DS-000178 p. 68).
@@ -105,6 +112,7 @@ impl Icm20948 {
         add(&mut read, ends);
         self.gyro.tally.read += read[Channel::Gyro as usize];
         self.accel.tally.read += read[Channel::Accel as usize];
+        self.external.tally_of_fifo().read += read[Channel::Mag as usize];
         byte
     }
 }

@@ -19,7 +19,8 @@ impl Mpu {
         let bits = match channel {
             Channel::Gyro => GYRO,
             Channel::Accel => ACCEL,
-            Channel::Mag => return false,
+            // Assumed: all that the slaves read enters with any of their bits.
+            Channel::Mag => return self.fifo_is_on() && self.of(FIFO_EN) & SLAVES != 0,
         };
         self.fifo_is_on() && self.of(FIFO_EN) & bits == bits
     }
@@ -27,10 +28,9 @@ impl Mpu {
     /// Puts what FIFO_EN selects of the newest sample there, in the order of the registers. `with_gyro` and
     /// `with_accel` are whether theirs are new: that of a slower one, or of one that is off, is repeated.
     pub(super) fn push_frame(&mut self, with_gyro: bool, with_accel: bool) {
-        if !self.fifo_is_on() {
-            return;
-        }
-        let enabled = self.of(FIFO_EN);
+        let enabled = if self.fifo_is_on() { self.of(FIFO_EN) } else { 0 };
+        // The driver has turned it off since that sample was taken.
+        self.accel.tally.missed += u64::from(with_accel && enabled & ACCEL == 0);
         let mut frame = Frame::new();
         if enabled & ACCEL != 0 {
             let [x, y, z] = self.accel.counts.map(i16::to_be_bytes);
@@ -47,7 +47,7 @@ impl Mpu {
         }
         frame.is_sample(Channel::Gyro, 6, with_gyro && enabled & GYRO == GYRO);
         if enabled & SLAVES != 0 {
-            frame.add(&self.external.bytes[..self.external.len]);
+            self.external.add_to(&mut frame, 0..self.external.len);
         }
         self.push_whole(frame.bytes());
     }
@@ -62,6 +62,7 @@ impl Mpu {
             self.status |= FIFO_OVERFLOW;
             self.gyro.tally.overflowed += lost.samples[Channel::Gyro as usize];
             self.accel.tally.overflowed += lost.samples[Channel::Accel as usize];
+            self.external.tally_of_fifo().overflowed += lost.samples[Channel::Mag as usize];
         }
     }
 
@@ -75,6 +76,7 @@ impl Mpu {
         let ended = self.fifo.clear();
         self.gyro.tally.missed += ended[Channel::Gyro as usize];
         self.accel.tally.missed += ended[Channel::Accel as usize];
+        self.external.tally_of_fifo().missed += ended[Channel::Mag as usize];
     }
 
     /// The oldest byte; the last one again where it is empty (RM-MPU-6000A p. 44).
@@ -84,6 +86,7 @@ impl Mpu {
             add(&mut read, ends);
             self.gyro.tally.read += read[Channel::Gyro as usize];
             self.accel.tally.read += read[Channel::Accel as usize];
+            self.external.tally_of_fifo().read += read[Channel::Mag as usize];
             self.last = byte;
         }
         self.last

@@ -212,3 +212,25 @@ proptest! {
         checks::bursts_at_any_pace_are_whole_samples_in_order(&mut chip, &[data], &paces)?;
     }
 }
+
+#[test]
+fn an_accelerometer_that_samples_between_the_gyros_samples_is_counted_once_in_the_fifo() {
+    let mut chip = Mpu::mpu6500(0x68);
+    for write in [[0x6b, 0], [0x23, 0x78], [0x6a, 0x44]] {
+        put(&mut chip, &write);
+    }
+    for k in 0..10 {
+        chip.sample(0, &Samples { accel: Some([k; 3]), ..Samples::default() });
+        chip.sample(0, &Samples { gyro: Some([k; 3]), ..Samples::default() });
+    }
+    let _: [u8; 120] = burst(&mut chip, 0x74);
+    let all = Tally { made: 10, read: 10, ..Tally::default() };
+    assert_eq!([Channel::Gyro, Channel::Accel].map(|channel| chip.tally(channel)), [all; 2]);
+    // One that a newer one replaces enters no FIFO, and one that finds it off neither.
+    for k in 0..2 {
+        chip.sample(0, &Samples { accel: Some([k; 3]), ..Samples::default() });
+    }
+    put(&mut chip, &[0x6a, 0x00]);
+    chip.sample(0, &Samples { gyro: Some([0; 3]), ..Samples::default() });
+    assert_eq!(chip.tally(Channel::Accel), Tally { made: 12, missed: 2, ..all });
+}
