@@ -5,7 +5,7 @@
 #include "imu.h"
 #include "telemetry.h"
 
-static const uint32_t PERIOD_US = 5000, GIVE_UP_US = 1000000;
+static const uint32_t PERIOD_US = 5000, GIVE_UP_US = 5000000;
 
 static struct estimator estimator;
 
@@ -55,7 +55,7 @@ static void take(uint64_t read_us, struct imu_sample *s) {
     if (estimator_due(&estimator)) telemetry_send(&estimator);
 }
 
-/* Reads until the chip has not answered for a second. */
+/* Reads until the chip has not answered for five seconds. */
 static void run(rt_bus *bus) {
     uint64_t due_us = board_now_us(), heard_us = due_us;
     while (board_now_us() - heard_us < GIVE_UP_US && !board_closed()) {
@@ -79,7 +79,7 @@ int main(int argc, char **argv) {
     board_start(argc, argv);
     bus.send = send_bytes;
     bus.receive = receive_bytes;
-    bus.timeout_ms = 200;
+    bus.timeout_ms = 1000;
     while (!board_closed()) {
         const int is_there = find_bridge(&bus);
         if (!is_there && has_run) break;

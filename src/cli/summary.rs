@@ -27,14 +27,11 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
             text += &links(report);
         }
     }
-    if report.rest_s > 0.0 && report.links.iter().any(|link| link.bus.is_some()) {
+    if report.rest_s > 0.0 {
+        let is_asked = report.links.iter().any(|link| link.bus.is_some());
+        let counted = if is_asked { "not in the counts" } else { "in the counts" };
         text += &format!(
-            "held still for {} s until a first sample was read: not in the counts\n",
-            number(report.rest_s)
-        );
-    } else if report.rest_s > 0.0 {
-        text += &format!(
-            "held still for {} s before the scene: those samples are in the counts\n",
+            "held still for {} s before the scene: those samples are {counted}\n",
             number(report.rest_s)
         );
     }
