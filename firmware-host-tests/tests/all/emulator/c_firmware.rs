@@ -117,8 +117,9 @@ fn build_with(machine: Machine, declination_deg: f64, offset_mg: [f64; 3]) -> Pa
     let _one = ONE_AT_A_TIME.lock();
     let declination_deg = format!("{declination_deg:.3}");
     let offset_mg = offset_mg.map(|offset| format!("{offset:.3}")).join(",");
-    let folder =
-        Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("firmware-c-{declination_deg}-{offset_mg}"));
+    // In a link a comma has a meaning.
+    let name = format!("firmware-c-{declination_deg}-{}", offset_mg.replace(',', "_"));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let mut make = Command::new("make");
     make.arg("--directory").arg(concat!(env!("CARGO_MANIFEST_DIR"), "/c"));
     make.arg(format!("OUT={}", folder.display())).arg(format!("DECLINATION_DEG={declination_deg}"));
