@@ -16,7 +16,6 @@ use ratetable::earth::declination;
 use ratetable::geometry::Attitude;
 use ratetable::scene::{Output, Plan};
 use ratetable::score::AttitudeError;
-use ratetable::sensor::SensorKind;
 use ratetable::session::{self, Job, Outcome, Speed};
 use ratetable::time::SimTime;
 use ratetable_firmware_host_tests::quaternion::from_euler;
