@@ -85,8 +85,12 @@ fn sensor(
 
 /// Where the sensor's chip answers on a bus.
 fn address(section: &Section<'_>) -> Option<u8> {
-    section.entry("address")?;
+    let is_number = matches!(section.entry("address")?.node.value, Value::Integer(_));
     let address = section.whole("address", 0);
+    // Anything else has been told.
+    if !is_number {
+        return None;
+    }
     let usable = u8::try_from(address).ok().filter(|address| (0x08..=0x77).contains(address));
     if usable.is_none() {
         section.mistake("address", format!("is {address:#x}; an I2C address has 7 bits, from 0x08 to 0x77"));

@@ -295,7 +295,7 @@ impl Server<'_> {
             return;
         }
         let told = |change: &Change| match change.setting.start {
-            SimTime::ZERO => format!("the driver has set {change}"),
+            SimTime::ZERO => format!("as the scene begins, {change}"),
             t => format!("the driver sets {change}, from {t} on"),
         };
         let news: Vec<String> = self.board.news().iter().map(told).collect();
