@@ -19,7 +19,7 @@ use super::common::{Vector, vectors};
 
 const WARNINGS: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"];
 
-/// Compilers and what they are told of the language.
+/// Each compiler with its flag for the language standard.
 const DIALECTS: [(&str, &[&str]); 2] = [("cc", &["-std=c99"]), ("c++", &["-std=c++17", "-x", "c++"])];
 
 /// The test's program, once for each dialect that has a compiler.

@@ -1,6 +1,6 @@
 //! The FIFO of an ICM-20948: which bytes a sample puts there, and what a full one loses.
 
-use super::{Channel, FIFO_EN_1, FIFO_EN_2, FIFO_MODE, FIFO_RST, Icm20948, OVERFLOW, USER_CTRL, add};
+use super::{Channel, FIFO_EN_1, FIFO_EN_2, FIFO_MODE, FIFO_RST, Icm20948, OVERFLOW, Tally, USER_CTRL, add};
 use crate::chip::fifo::{Frame, Full, Mark};
 
 /// Bits of FIFO_EN_2.
@@ -84,10 +84,14 @@ impl Icm20948 {
         let full = if self.of(FIFO_MODE) & 0x01 != 0 { Full::Stops } else { Full::LosesBytes };
         if let Some(lost) = self.fifo.put(bytes, SIZE, full) {
             self.status[OVERFLOW] |= 0x01;
-            self.gyro.tally.overflowed += lost.samples[Channel::Gyro as usize];
-            self.accel.tally.overflowed += lost.samples[Channel::Accel as usize];
-            self.external.tally_of_fifo().overflowed += lost.samples[Channel::Mag as usize];
+            self.count(lost.samples, |tally| &mut tally.overflowed);
         }
+    }
+
+    /// Adds samples of gyro, accelerometer and magnetometer to one of their counts.
+    fn count(&mut self, samples: [u64; 3], of: fn(&mut Tally) -> &mut u64) {
+        let tallies = [&mut self.gyro.tally, &mut self.accel.tally, self.external.tally_of_fifo()];
+        tallies.into_iter().zip(samples).for_each(|(tally, samples)| *of(tally) += samples);
     }
 
     /// A byte that a driver writes there.
@@ -100,9 +104,7 @@ impl Icm20948 {
     /// Empties it; its samples are missed.
     pub(super) fn empty_fifo(&mut self) {
         let ended = self.fifo.clear();
-        self.gyro.tally.missed += ended[Channel::Gyro as usize];
-        self.accel.tally.missed += ended[Channel::Accel as usize];
-        self.external.tally_of_fifo().missed += ended[Channel::Mag as usize];
+        self.count(ended, |tally| &mut tally.missed);
     }
 
     /// The oldest byte. Assumed: an empty one reads 0xff, as that of the ICM-20690 (DS-000178 p. 68).
@@ -110,9 +112,7 @@ impl Icm20948 {
         let Some((byte, ends)) = self.fifo.pop() else { return 0xff };
         let mut read = [0; 3];
         add(&mut read, ends);
-        self.gyro.tally.read += read[Channel::Gyro as usize];
-        self.accel.tally.read += read[Channel::Accel as usize];
-        self.external.tally_of_fifo().read += read[Channel::Mag as usize];
+        self.count(read, |tally| &mut tally.read);
         byte
     }
 }

@@ -1,6 +1,6 @@
 //! The FIFO of an MPU: which bytes a sample puts there, and what a full one loses.
 
-use super::{CONFIG, Channel, FIFO_EN, FIFO_OVERFLOW, Model, Mpu, USER_CTRL, add};
+use super::{CONFIG, Channel, FIFO_EN, FIFO_OVERFLOW, Model, Mpu, Tally, USER_CTRL, add};
 use crate::chip::fifo::{Frame, Full, Mark};
 
 /// Bits of FIFO_EN.
@@ -60,10 +60,14 @@ impl Mpu {
         let full = if !is_first && self.of(CONFIG) & 0x40 != 0 { Full::Stops } else { Full::LosesBytes };
         if let Some(lost) = self.fifo.put(bytes, if is_first { 1024 } else { 512 }, full) {
             self.status |= FIFO_OVERFLOW;
-            self.gyro.tally.overflowed += lost.samples[Channel::Gyro as usize];
-            self.accel.tally.overflowed += lost.samples[Channel::Accel as usize];
-            self.external.tally_of_fifo().overflowed += lost.samples[Channel::Mag as usize];
+            self.count(lost.samples, |tally| &mut tally.overflowed);
         }
+    }
+
+    /// Adds samples of gyro, accelerometer and magnetometer to one of their counts.
+    fn count(&mut self, samples: [u64; 3], of: fn(&mut Tally) -> &mut u64) {
+        let tallies = [&mut self.gyro.tally, &mut self.accel.tally, self.external.tally_of_fifo()];
+        tallies.into_iter().zip(samples).for_each(|(tally, samples)| *of(tally) += samples);
     }
 
     /// A byte that a driver writes there.
@@ -74,9 +78,7 @@ impl Mpu {
     /// Empties it; its samples are missed.
     pub(super) fn empty_fifo(&mut self) {
         let ended = self.fifo.clear();
-        self.gyro.tally.missed += ended[Channel::Gyro as usize];
-        self.accel.tally.missed += ended[Channel::Accel as usize];
-        self.external.tally_of_fifo().missed += ended[Channel::Mag as usize];
+        self.count(ended, |tally| &mut tally.missed);
     }
 
     /// The oldest byte; the last one again where it is empty (RM-MPU-6000A p. 44).
@@ -84,9 +86,7 @@ impl Mpu {
         if let Some((byte, ends)) = self.fifo.pop() {
             let mut read = [0; 3];
             add(&mut read, ends);
-            self.gyro.tally.read += read[Channel::Gyro as usize];
-            self.accel.tally.read += read[Channel::Accel as usize];
-            self.external.tally_of_fifo().read += read[Channel::Mag as usize];
+            self.count(read, |tally| &mut tally.read);
             self.last = byte;
         }
         self.last
