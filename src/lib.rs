@@ -32,7 +32,7 @@
 //! | study methods and sensors | [`study`] |
 //!
 //! `examples/` has a sensor model of one's own streamed over a pty, and a dataset in memory. Features: `cli` (the
-//! program, on by default), `charts`, `filters`, `ulog`, `wmm`, `parquet`, `mcap`; a library takes
+//! program, on by default), `charts`, `filters`, `live`, `ulog`, `wmm`, `parquet`, `mcap`; a library takes
 //! `default-features = false` and those that it uses.
 
 // `eprintln!` panics where standard error is closed or full: `cli::tell` does not.
@@ -53,6 +53,8 @@ pub mod interrupt;
 mod keys;
 pub mod link;
 pub mod listen;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod motion;
 #[doc(hidden)] // For the benchmark of pacing alone.
 pub mod os;

@@ -1,0 +1,40 @@
+//! What has happened since the last look, as data.
+
+use crate::geometry::Attitude;
+use crate::motion::Truth;
+use crate::time::SimTime;
+
+/// What has happened since the last look.
+#[derive(Clone, Debug, Default)]
+pub struct Batch {
+    /// Each sensor's new readings; a sensor without any may be missing.
+    pub readings: Vec<Readings>,
+    /// The truth at the same times, or some of them.
+    pub truth: Vec<Truth>,
+    /// Attitudes that were told.
+    pub estimates: Vec<Told>,
+}
+
+/// An attitude that was told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Told {
+    /// Which of the estimators tells it.
+    pub of: usize,
+    /// When it held, in scene time, as far as known.
+    pub t: SimTime,
+    /// Body to nav.
+    pub attitude: Attitude,
+}
+
+/// Readings of one sensor, in order of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Readings {
+    /// Which of the sensors.
+    pub of: usize,
+    /// When each was taken.
+    pub t: Vec<SimTime>,
+    /// What it says, one column for each value (see [`columns`](super::columns)), in the scene's axes.
+    pub values: Vec<Vec<f64>>,
+    /// What it would say without errors; no columns where that is not known.
+    pub truth: Vec<Vec<f64>>,
+}
