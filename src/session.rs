@@ -69,13 +69,13 @@ mod ways_out;
 
 pub use budget::{Budget, afford};
 pub use error::SessionError;
-pub use event::{Event, Progress};
+pub use event::{Event, LinkProgress, Progress};
 pub use heard::Judging;
 pub use job::{Job, OnBytes, Tap};
 pub use off::Off;
 pub use outcome::Outcome;
 pub use pace::Speed;
 pub use run::run;
-pub use watch::{Record, Watch, Watched};
+pub use watch::{BareTimer, Record, Watch, Watched};
 
 use shared::Shared;

@@ -55,7 +55,7 @@ impl Bar {
 
     /// Of a live run.
     pub fn live(&self, progress: &Progress) {
-        let Progress { t, still, packets, dropped, error } = progress;
+        let Progress { t, still, packets, dropped, error, .. } = progress;
         let error = error.map_or(String::new(), |off| {
             let Off { roll_deg, pitch_deg, heading_deg, .. } = off;
             format!(", off by roll {roll_deg:+.2}° pitch {pitch_deg:+.2}° heading {heading_deg:+.2}°")

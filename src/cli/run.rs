@@ -294,6 +294,7 @@ fn play(job: Job, demonstration: bool) -> Result<(Outcome, Option<Received>), Re
         Event::Started if held => bar.line("the scene starts"),
         Event::Started => {}
         Event::Progress(progress) => bar.live(&progress),
+        _ => {}
     });
     bar.clear();
     let received = firmware.map(Firmware::end).transpose();

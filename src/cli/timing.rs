@@ -15,7 +15,7 @@ use crate::dataset::{self, DatasetError, Folder, Holds};
 use crate::link::Address;
 use crate::report::{Limit, TimingReport};
 use crate::scene::{Destination, Output, Plan};
-use crate::session::{self, Event, Job, Outcome, SessionError, Tap, Watch};
+use crate::session::{self, BareTimer, Event, Job, Outcome, SessionError, Tap, Watch};
 use crate::time::{NANOS, Rate, SimTime};
 use crate::wire::{self, Protocol};
 use collector::Collector;
@@ -180,7 +180,7 @@ fn measure(mut job: Job, folder: Option<&Folder>) -> Result<Measured, Refusal> {
     let mut arrivals = Some(Arrivals::new(*protocol, clock, ring));
     let heard = Rc::new(RefCell::new(Came::default()));
     job.tap = arrivals.take_if(|_| far == Far::Loopback).map(|arrivals| tap(arrivals, heard.clone()));
-    job.watch = Some(Watch { clock, slice: SLICE, rate, records });
+    job.watch = Some(Watch { clock, bare: Some(BareTimer { slice: SLICE, rate }), records });
     let (outcome, came) = stream(job, arrivals.filter(|_| far == Far::Reader));
     let ledger = collector.end();
     let outcome = outcome?;
@@ -214,8 +214,8 @@ fn stream(
         Event::Waiting { whom, left } => {
             bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
         }
-        Event::Ground(_) | Event::Silent(_) | Event::Still | Event::Started => {}
         Event::Progress(progress) => bar.live(&progress),
+        _ => {}
     });
     bar.clear();
     (outcome, reader.map(Reader::end).transpose())

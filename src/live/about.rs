@@ -1,7 +1,10 @@
 //! What is shown, as it is known before anything happens.
 
 use crate::geometry::Axes;
-use crate::sensor::{SensorKind, Shape};
+use crate::motion::Push;
+use crate::report::number;
+use crate::scene::{OutputFault, Plan};
+use crate::sensor::{SensorKind, SensorPlan, Shape};
 use crate::time::SimTime;
 
 /// What is shown: a scene that is played, or a stream that is listened to.
@@ -15,6 +18,10 @@ pub struct About {
     pub axes: Axes,
     /// How long the scene lasts, if it ends by itself.
     pub duration: Option<SimTime>,
+    /// Scene seconds a second, or `max`; null where there is no such thing.
+    pub speed: serde_json::Value,
+    /// What an attitude is compared with: `truth`, or a `reference`; `None` where nothing is known.
+    pub reference: Option<&'static str>,
     /// Each sensor, in the order of the plan or of its first sample.
     pub sensors: Vec<Shown>,
     /// Who tells an attitude, in the order of the links that they tell it on.
@@ -78,4 +85,75 @@ pub fn columns(kind: SensorKind) -> Vec<Column> {
         Shape::Pressure => vec![Column { name: "pressure", unit }],
         Shape::Position => FIX.to_vec(),
     }
+}
+
+impl About {
+    /// A scene that is played up to `end` to these links, by this command.
+    pub fn scene(command: &'static str, plan: &Plan, end: SimTime, links: Vec<String>) -> About {
+        let sensor = |it: &SensorPlan| Shown {
+            name: it.kind.name().into(),
+            kind: it.kind,
+            rate_hz: Some(it.rate.as_hz()),
+            has_truth: true,
+        };
+        About {
+            command,
+            title: plan.name.clone(),
+            axes: plan.axes,
+            duration: (end < SimTime::FOREVER).then_some(end),
+            speed: serde_json::Value::Null,
+            reference: Some("truth"),
+            sensors: plan.sensors.iter().map(sensor).collect(),
+            estimators: links.clone(),
+            links,
+            timeline: timeline(plan),
+        }
+    }
+}
+
+/// Motions, forces, faults and settings of a scene, in order of time.
+fn timeline(plan: &Plan) -> Vec<Span> {
+    let until = |end: SimTime| (end < SimTime::FOREVER).then_some(end);
+    let mut spans = motions(plan);
+    for force in plan.trajectory.forces() {
+        let strength = match force.push {
+            Push::Body(push) => push.v.length(),
+            Push::Nav(push) => push.v.length(),
+        };
+        let label = format!("{} m/s²", number(strength));
+        spans.push(Span { row: "force", label, start: force.start, end: until(force.end) });
+    }
+    for sensor in &plan.sensors {
+        for fault in &sensor.faults {
+            let label = format!("{} {}", sensor.kind, fault.kind.name());
+            spans.push(Span { row: "fault", label, start: fault.start, end: until(fault.end) });
+        }
+        for setting in &sensor.settings {
+            let rate = setting.rate.map_or("off".into(), |rate| rate.to_string());
+            let label = format!("{} {rate}", sensor.kind);
+            spans.push(Span { row: "setting", label, start: setting.start, end: Some(setting.start) });
+        }
+    }
+    for fault in plan.output_faults.iter().map(OutputFault::fault) {
+        let label = format!("packets {}", fault.kind.name());
+        spans.push(Span { row: "fault", label, start: fault.start, end: until(fault.end) });
+    }
+    spans
+}
+
+/// The motions by the names that the scene gives them.
+fn motions(plan: &Plan) -> Vec<Span> {
+    let scene = plan.resolved.parse::<toml::Table>().unwrap_or_default();
+    let written = scene.get("motion").and_then(|it| it.as_array()).cloned().unwrap_or_default();
+    let name = |i: usize| Some(written.get(i)?.get("kind")?.as_str()?.to_string());
+    let starts: Vec<_> = plan.trajectory.starts().collect();
+    let ends = starts.iter().skip(1).copied().chain([plan.trajectory.moving_until()]);
+    let pairs = starts.iter().zip(ends).enumerate();
+    let span = |(i, (start, end)): (usize, (&SimTime, SimTime))| Span {
+        row: "motion",
+        label: name(i).unwrap_or_else(|| "motion".into()),
+        start: *start,
+        end: Some(end),
+    };
+    pairs.map(span).collect()
 }

@@ -1,5 +1,6 @@
 //! What has happened since the last look, as data.
 
+use super::board::Heard;
 use crate::geometry::Attitude;
 use crate::motion::Truth;
 use crate::time::SimTime;
@@ -13,6 +14,24 @@ pub struct Batch {
     pub truth: Vec<Truth>,
     /// Attitudes that were told.
     pub estimates: Vec<Told>,
+}
+
+impl Batch {
+    /// Takes in a value that was heard.
+    pub(super) fn heard(&mut self, Heard { of, t, values }: Heard) {
+        let place = self.readings.iter().position(|it| it.of == of);
+        let place = place.unwrap_or_else(|| {
+            self.readings.push(Readings {
+                of,
+                values: vec![Vec::new(); values.len()],
+                ..Readings::default()
+            });
+            self.readings.len() - 1
+        });
+        let readings = &mut self.readings[place];
+        readings.t.push(t);
+        readings.values.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+    }
 }
 
 /// An attitude that was told.

@@ -29,6 +29,11 @@ pub struct OutputFault {
 }
 
 impl OutputFault {
+    /// What goes wrong with the packets, and when.
+    pub fn fault(&self) -> &wire::PacketFault {
+        &self.fault
+    }
+
     /// When it begins.
     pub fn start(&self) -> SimTime {
         self.fault.start

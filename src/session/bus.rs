@@ -13,6 +13,7 @@ use super::command::Program;
 use super::control::Control;
 use super::outside::Outside;
 use super::{Event, Job, Outcome, Progress, SessionError};
+use crate::bus::Change;
 use crate::scene::Output;
 use crate::wire::Protocol;
 use std::sync::atomic::Ordering;
@@ -27,6 +28,8 @@ const PROGRESS: Duration = Duration::from_millis(100);
 enum News {
     /// Its link is open: what to connect to.
     Open(String),
+    /// The driver has set a sensor.
+    Set(Box<Change>),
     /// Something the user should know.
     Notice(String),
     /// Somebody may have to be waited for.
@@ -101,6 +104,7 @@ async fn attend(
                     }
                     name = at;
                 }
+                News::Set(change) => outside.tell(Event::Set(&change)),
                 News::Notice(notice) => outside.notice(notice),
                 News::Waiting(left) => {
                     outside.tell(Event::Waiting { whom: format!("a driver to open {name}"), left });
@@ -112,6 +116,7 @@ async fn attend(
             _ = ticks.tick() => {
                 control.tick(outside);
                 outside.tell(Event::Progress(Progress { dropped: 0, ..control.progress() }));
+                control.tell_more(outside);
             }
             () = outside.ends() => return None,
         }

@@ -16,16 +16,16 @@ use super::pace::Pace;
 use super::pacer::Pacer;
 use super::pacing::{LivePacer, Pacing};
 use super::producing::Producing;
-use super::shared::TICK;
+use super::shared::{LaneCounts, TICK};
 use super::side::{Side, Waits};
 use super::talk::Talk;
 use super::watch::Watching;
-use super::{Event, Job, Outcome, Progress, SessionError, Shared, Speed, budget, ring, step};
+use super::{Event, Job, LinkProgress, Outcome, Progress, SessionError, Shared, Speed, budget, ring, step};
 use crate::clock::{Clock, Policy, Precise, WallClock};
 use crate::link::Link;
 use crate::motion::Truth;
 use crate::report::LinkReport;
-use crate::scene::Overload;
+use crate::scene::{Output, Overload};
 use crate::time::SimTime;
 use crate::wire::Protocol;
 use std::cell::RefCell;
@@ -54,6 +54,8 @@ pub(super) struct Control {
     pub(super) talk: Rc<RefCell<Talk>>,
     pub(super) ears: Ears,
     hold: Hold,
+    /// What the lanes publish of their counts, once they are at work.
+    counts: Vec<Arc<LaneCounts>>,
     /// Set where nothing moves without a reader and nothing else ends the run.
     absence: Option<Absence>,
     /// Why the run ended before the scene began.
@@ -136,6 +138,7 @@ impl Control {
             talk: Rc::new(RefCell::new(Talk::new(sides, heard))),
             ears: Ears::default(),
             hold: Hold::new(job.rest),
+            counts: Vec::new(),
             absence: waits.then(|| Absence::new(absence)),
             failed: None,
             job,
@@ -259,7 +262,9 @@ impl Control {
             Pace::new(Precise::new(self.clock, Policy::Adaptive), self.job.speed, self.shared.clone());
         pace.watching = self.job.watch.take().map(Watching::new);
         let mut talk = self.talk.borrow_mut();
-        let lanes = self.outputs.iter().enumerate().map(|(i, it)| talk.lane(i, &it.output)).collect();
+        let lanes = self.outputs.iter().enumerate().map(|(i, it)| talk.lane(i, &it.output));
+        let lanes: Vec<_> = lanes.collect();
+        self.counts = lanes.iter().map(|lane| lane.counts.clone()).collect();
         Pacer::new(pace, ring, lanes)
     }
 
@@ -285,12 +290,55 @@ impl Control {
                         self.shared.stop.store(true, Ordering::Relaxed);
                     }
                     outside.tell(Event::Progress(progress));
+                    self.tell_more(outside);
                 }
                 () = outside.ends() => self.shared.stop.store(true, Ordering::Relaxed),
             }
         }
         self.outputs.iter_mut().for_each(|output| output.look(outside));
         outside.tell(Event::Progress(self.progress()));
+        self.tell_more(outside);
+    }
+
+    /// Tells each link's counts and the attitudes that came back.
+    pub(super) fn tell_more(&self, outside: &mut Outside<'_>) {
+        let links = self.links_so_far();
+        outside.tell(Event::Links(&links));
+        let count = self.outputs.len();
+        for i in 0..count {
+            let untold = self.talk.borrow_mut().sides[i].untold();
+            if !untold.is_empty() {
+                outside.tell(Event::Estimates(self.place(i), &untold));
+            }
+        }
+    }
+
+    /// The index among the job's outputs of an output that is no bus.
+    fn place(&self, i: usize) -> usize {
+        let is_bus = |output: &Output| output.to.protocol == Protocol::Bus;
+        let others = self.job.outputs.iter().enumerate().filter(|(_, output)| !is_bus(output));
+        others.map(|(place, _)| place).nth(i).unwrap_or(i)
+    }
+
+    /// Each output's counts by now, in the job's order.
+    fn links_so_far(&self) -> Vec<LinkProgress> {
+        let none = LaneCounts::default();
+        let mut open = self.outputs.iter().enumerate();
+        let talk = self.talk.borrow();
+        let progress = |output: &Output| {
+            if output.to.protocol == Protocol::Bus {
+                return LinkProgress::of(&self.shared.bus);
+            }
+            let Some((i, it)) = open.next() else { return LinkProgress::default() };
+            let (side, counts) = (&talk.sides[i], self.counts.get(i));
+            LinkProgress {
+                unread: it.unread(),
+                received: side.bytes,
+                damaged: side.dialogue.is_some().then(|| side.damaged()),
+                ..LinkProgress::of(counts.map_or(&none, |counts| counts))
+            }
+        };
+        self.job.outputs.iter().map(progress).collect()
     }
 
     pub(super) fn progress(&self) -> Progress {
@@ -298,6 +346,7 @@ impl Control {
         let scene = self.shared.scene_time(stream);
         Progress {
             t: scene.unwrap_or(stream),
+            stream,
             still: scene.is_none(),
             packets: self.shared.packets.get(),
             dropped: self.shared.dropped.get(),

@@ -39,7 +39,7 @@ pub struct Job {
     pub judging: Judging,
     /// The processor to bind the pacing thread to.
     pub cpu: Option<usize>,
-    /// A comparison with a bare timer, on the pacing thread.
+    /// Whoever wants a record of every sample; of a run that is paced.
     pub watch: Option<Watch>,
     /// Receives what comes back on the first link, in place of the score: a loopback plug returns the packets.
     pub tap: Option<Tap>,

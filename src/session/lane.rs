@@ -10,6 +10,7 @@ use super::left::Left;
 use super::pace::{Pace, Speed};
 use super::queue::{self, Due, Queue};
 use super::replies::{Replied, Replies};
+use super::shared::LaneCounts;
 use super::step::{self, Step, Turn};
 use super::tally::{SensorTally, Tally};
 use crate::clock::Clock;
@@ -18,6 +19,7 @@ use crate::scene::Overload;
 use crate::sensor::Kinds;
 use crate::wire::{Head, Packet};
 use std::io::ErrorKind;
+use std::sync::Arc;
 use tokio::time::Instant;
 
 /// The pacing thread's half of an output.
@@ -31,6 +33,8 @@ pub(super) struct Lane {
     pub left: Left,
     /// Why its link stopped taking packets.
     pub end: Option<ErrorKind>,
+    /// What the others may know of its counts.
+    pub counts: Arc<LaneCounts>,
     policy: Overload,
     queue: Queue,
 }
@@ -55,6 +59,7 @@ impl Lane {
             tally: Tally::default(),
             left: Left::default(),
             end: None,
+            counts: Arc::default(),
             policy,
             queue: Queue::new(policy),
         }
@@ -92,6 +97,7 @@ impl Lane {
             (_, Overload::DropOldest) => self.deliver_in_turn(packet, due, pace),
             (_, Overload::Stretch) => return self.deliver_late(packet, due, pace),
         }
+        self.publish();
         Delivery::Over
     }
 
@@ -115,6 +121,15 @@ impl Lane {
     /// The packets gathered since the last call are sent at `now`.
     pub(super) fn gathered(&mut self, now: i64, shared: &Shared) {
         shared.packets.add(self.tally.gathered_by(now));
+        self.publish();
+    }
+
+    /// Lets the others know of its counts.
+    fn publish(&self) {
+        self.counts.packets.set(self.tally.packets);
+        self.counts.bytes.set(self.tally.bytes);
+        self.counts.dropped.set(self.tally.dropped);
+        self.counts.queued.set(self.queue.len() as u64);
     }
 
     fn deliver_now<C: Clock>(&mut self, packet: &Packet, due: i64, pace: &mut Pace<C>) {
@@ -157,6 +172,7 @@ impl Lane {
             Sent::Full | Sent::Away if pace.shared.stopped() => self.queue.push(Due { packet: *packet, due }),
             Sent::Full | Sent::Away => return Delivery::Again,
         }
+        self.publish();
         Delivery::Over
     }
 
@@ -173,6 +189,7 @@ impl Lane {
                 Sent::Away | Sent::Gone(_) => self.lose(&it.packet, pace),
             }
             self.queue.pop();
+            self.publish();
         }
     }
 

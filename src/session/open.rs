@@ -152,6 +152,11 @@ impl OpenOutput {
         self.look_for_reader(outside);
     }
 
+    /// Bytes that the other side has not read, if the system tells.
+    pub(super) fn unread(&self) -> Option<u64> {
+        self.link.queued().map(|bytes| bytes as u64)
+    }
+
     /// Notices a reader that leaves for longer than a moment, and one that comes back.
     fn look_for_reader(&mut self, outside: &mut Outside<'_>) {
         if !self.link.peer_has_left() {

@@ -127,8 +127,9 @@ impl<C: Clock> Pace<C> {
     /// Runs a slice of the bare timer; scene time stands still meanwhile.
     pub(super) fn compare(&mut self) {
         let Some(watching) = &mut self.watching else { return };
+        let Some(bare) = watching.bare() else { return };
         self.effort.pause(self.clock.now());
-        let start = watching.bare_timer(&mut self.clock, &self.shared);
+        let start = watching.bare_timer(bare, &mut self.clock, &self.shared);
         self.starts_at(start);
         self.effort.resume(self.clock.now());
     }

@@ -39,6 +39,11 @@ impl Queue {
         self.waiting.is_empty()
     }
 
+    /// How many wait.
+    pub(super) fn len(&self) -> usize {
+        self.waiting.len()
+    }
+
     /// The packet that has waited longest.
     pub(super) fn oldest(&self) -> Option<Due> {
         self.waiting.front().copied()

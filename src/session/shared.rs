@@ -31,10 +31,25 @@ impl Count {
         self.0.store(self.get() + more, Ordering::Relaxed);
     }
 
+    /// Sets the count; only for the pacing thread.
+    pub(super) fn set(&self, count: u64) {
+        self.0.store(count, Ordering::Relaxed);
+    }
+
     /// The present count.
     pub(super) fn get(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
+}
+
+/// One output's counts so far, as its lane publishes them for whoever looks on.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+pub(super) struct LaneCounts {
+    pub packets: Count,
+    pub bytes: Count,
+    pub dropped: Count,
+    pub queued: Count,
 }
 
 /// State that the threads of a run share.
@@ -57,6 +72,8 @@ pub(super) struct Shared {
     pub stretched_at_ns: AtomicI64,
     pub packets: Count,
     pub dropped: Count,
+    /// What was answered on a bus.
+    pub bus: LaneCounts,
     /// Packets for whose answer the wait was given up.
     pub untaken: Count,
 }

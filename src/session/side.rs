@@ -7,10 +7,11 @@ use super::replies::Way;
 use super::settling::Settling;
 use super::step::{Step, in_lockstep};
 use super::tally::Tally;
+use crate::geometry::Attitude;
 use crate::link::{Baud, Sender};
 use crate::report::AnswersReport;
 use crate::scene::{Output, Tells};
-use crate::score::Timed;
+use crate::score::{HeldAt, Timed};
 use crate::time::{NANOS, SimTime};
 use crate::wire::Protocol;
 use crate::wire::dialogue::{Dialogue, Peer, Stage};
@@ -32,6 +33,8 @@ pub(super) struct Side {
     pub dialogue: Option<Box<dyn Dialogue>>,
     /// Its estimates, in order of arrival.
     pub estimates: Vec<Timed>,
+    /// How many of them were told.
+    told: usize,
     /// Bytes received, and the messages in them.
     pub bytes: u64,
     pub messages: u64,
@@ -80,6 +83,7 @@ impl Side {
         Side {
             dialogue: output.to.is_spoken_with().then(dialogue).flatten(),
             estimates: Vec::new(),
+            told: 0,
             bytes: 0,
             messages: 0,
             answers: Answers::default(),
@@ -205,6 +209,16 @@ impl Side {
             Some(settling) if !settling.is_settled() => stage.min(Stage::Still),
             _ => stage,
         }
+    }
+
+    /// The estimates that were not told yet, each with the scene time at which it held, as far as known by now.
+    pub(super) fn untold(&mut self) -> Vec<(SimTime, Attitude)> {
+        let held = |it: &Timed| match it.stamp {
+            HeldAt::Sample(t) => t,
+            HeldAt::Own(_) | HeldAt::Arrival => it.arrival,
+        };
+        let told = std::mem::replace(&mut self.told, self.estimates.len());
+        self.estimates[told..].iter().map(|it| (held(it), it.attitude)).collect()
     }
 
     /// Takes an estimate of the vehicle at rest that is `off` by so much. Returns a notice.

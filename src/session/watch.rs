@@ -1,5 +1,5 @@
-//! The additions of `timing` to the pacing thread: slices of a bare timer between those of the stream, and a record
-//! of every sample and every wake-up.
+//! A record of every sample that the pacing thread sends, for whoever looks on; and the bare timer of `timing`, whose
+//! slices come between those of the stream.
 
 use super::Shared;
 use crate::clock::{Clock, WallClock};
@@ -12,18 +12,25 @@ use rtrb::Producer;
 /// Time from the end of the bare timer's slice to the next packet, ns.
 const LEAD: i64 = 1_000_000;
 
-/// A request for a comparison on the pacing thread.
+/// A request for records from the pacing thread.
 #[derive(Debug)]
 pub struct Watch {
     /// The clock of the records, shared with the receiver.
     pub clock: WallClock,
+    /// The timer to compare the stream with.
+    pub bare: Option<BareTimer>,
+    /// Where records go; those that do not fit are counted.
+    pub records: Producer<Record>,
+}
+
+/// A request for a comparison on the pacing thread.
+#[derive(Clone, Copy, Debug)]
+pub struct BareTimer {
     /// Length of a slice of the bare timer, during which scene time stands still, and of each stream slice after
     /// it. Both start with half a slice, so that no slice begins where packets are due that are sent once a second.
     pub slice: SimTime,
     /// The bare timer's rate.
     pub rate: Rate,
-    /// Where records go; those that do not fit are counted.
-    pub records: Producer<Record>,
 }
 
 /// An event, in ns of the run's clock.
@@ -51,7 +58,7 @@ pub enum Record {
     },
 }
 
-/// A comparison in progress.
+/// Records being made.
 #[derive(Debug)]
 pub(super) struct Watching {
     asked: Watch,
@@ -60,7 +67,7 @@ pub(super) struct Watching {
     pub seen: Watched,
 }
 
-/// The result of a comparison.
+/// What was recorded.
 #[derive(Clone, Debug, Default)]
 pub struct Watched {
     /// Lateness of the bare timer's wake-ups.
@@ -76,17 +83,22 @@ impl Watching {
 
     /// Whether a slice of the bare timer comes before what is due at `t`.
     pub(super) fn interrupts(&self, t: SimTime) -> bool {
-        t >= self.next
+        self.asked.bare.is_some() && t >= self.next
     }
 
     /// Runs a slice of the bare timer. Returns the new clock time of scene time 0, so that the stream goes on as if
     /// there had been no slice.
-    pub(super) fn bare_timer(&mut self, clock: &mut impl Clock, shared: &Shared) -> i64 {
+    pub(super) fn bare_timer(
+        &mut self,
+        BareTimer { slice, rate }: BareTimer,
+        clock: &mut impl Clock,
+        shared: &Shared,
+    ) -> i64 {
         let start = clock.now() + LEAD;
-        let (rate, before) = (self.asked.rate, self.seen.late.count());
+        let before = self.seen.late.count();
         let stream = self.next;
         let first = stream == SimTime::ZERO;
-        let length = SimTime(if first { self.asked.slice.0 / 2 } else { self.asked.slice.0 });
+        let length = SimTime(if first { slice.0 / 2 } else { slice.0 });
         self.next = stream + length;
         for i in 1..=rate.ticks_before(SimTime::ZERO, length) {
             if shared.stopped() {
@@ -99,6 +111,11 @@ impl Watching {
             self.record(Record::Wake { k: before + i - 1, due, woke });
         }
         clock.now() + LEAD - stream.0
+    }
+
+    /// The timer that the stream takes turns with.
+    pub(super) fn bare(&self) -> Option<BareTimer> {
+        self.asked.bare
     }
 
     /// Records a packet's samples.

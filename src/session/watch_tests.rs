@@ -20,9 +20,8 @@ fn watched(clock: VirtualClock) -> (Pacer<VirtualClock>, Vec<Record>, Vec<u8>) {
     let (sender, mut far) = memory(1 << 20);
     let (records, mut recorded) = rtrb::RingBuffer::new(1 << 16);
     let mut pacer = pacer(clock, ring, sender, Speed::Times(1.0), &shared);
-    let slice = SimTime(100 * MILLI);
-    pacer.pace.watching =
-        Some(Watching::new(Watch { clock: WallClock::start(), slice, rate: Rate::hz(1000), records }));
+    let bare = BareTimer { slice: SimTime(100 * MILLI), rate: Rate::hz(1000) };
+    pacer.pace.watching = Some(Watching::new(Watch { clock: WallClock::start(), bare: Some(bare), records }));
     let counted = allocation_counter::measure(|| pacer.run(MILLI));
     assert_eq!(counted.count_total, 0);
     accounts_balance(&made, &mut pacer);

@@ -270,7 +270,10 @@ impl Server<'_> {
             self.bytes += if sent == Sent::Done { self.answer.len() as u64 } else { 0 };
             self.latency.record(self.clock.now() - now);
         }
-        self.shared.packets.add(self.bridge.counts().transfers - before);
+        let now = self.bridge.counts().transfers;
+        self.shared.packets.add(now - before);
+        self.shared.bus.packets.set(now);
+        self.shared.bus.bytes.set(self.bytes);
         if !had_begun && self.board.has_begun() {
             self.begin();
         }
@@ -298,8 +301,11 @@ impl Server<'_> {
             SimTime::ZERO => format!("as the scene begins, {change}"),
             t => format!("the driver sets {change}, from {t} on"),
         };
-        let news: Vec<String> = self.board.news().iter().map(told).collect();
-        news.into_iter().for_each(|notice| self.say(notice));
+        let news: Vec<_> = self.board.news().iter().map(|change| (change.clone(), told(change))).collect();
+        for (change, notice) in news {
+            let _ = self.news.send(News::Set(Box::new(change)));
+            self.say(notice);
+        }
     }
 
     /// Goes on at the speed that the client has set.
