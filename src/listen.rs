@@ -23,7 +23,7 @@ mod stream;
 
 pub use asking::Told;
 pub use live::listen;
-pub use meter::Meter;
+pub use meter::{Meter, Value};
 pub use stream::Stream;
 
 use crate::link::{Address, LinkError};
@@ -44,6 +44,8 @@ pub struct Job {
     pub wait: Duration,
     /// Whether to ask a controller for its attitude, as a ground station does.
     pub attitude: bool,
+    /// Whether to pass on what the samples say.
+    pub values: bool,
 }
 
 /// An event while listening.
@@ -56,6 +58,10 @@ pub enum Event<'a> {
     Ready(&'a str),
     /// Progress of the measurement.
     Progress(Progress<'a>),
+    /// What the samples of a read said, and when it came: since the first bytes, or `None` of a recording.
+    Values(Option<SimTime>, &'a [Value]),
+    /// Attitudes that a controller told since the last such event.
+    Told(&'a [Told]),
 }
 
 /// Progress of the measurement.

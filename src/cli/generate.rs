@@ -1,6 +1,7 @@
 //! `ratetable generate`: a dataset.
 
 use super::progress::Bar;
+use super::show::PAGE;
 use super::{Refusal, Verdict, clash, list, options, tell};
 use crate::dataset::{
     self, Bounds, FEATURES, FORMATS, Figure, Format, Holds, Made, Options, RunOptions, Shard, Summary,
@@ -8,7 +9,7 @@ use crate::dataset::{
 use crate::interrupt::on_interrupt;
 use crate::parallel;
 use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
-use crate::report::{Report, count};
+use crate::report::count;
 use crate::scene::{Plan, Runs, nearest};
 use crate::session::Outcome;
 use std::path::{Path, PathBuf};
@@ -211,24 +212,25 @@ fn panel<'a>(figure: &Figure, title: &str, lines: Vec<Line<'a>>) -> Panel<'a> {
 }
 
 /// The report of a run in its folder.
-const REPORT: &str = "report.json";
+pub const REPORT: &str = "report.json";
 
 /// Asks before a run whether its folder may be written.
 pub fn may_write(plan: &Plan, dir: &Path, force: bool) -> Result<(), Refusal> {
-    let names = dataset::names(plan, &FORMATS[..1], false, &[REPORT]);
+    let names = dataset::names(plan, &FORMATS[..1], false, &[REPORT, PAGE]);
     dataset::may_write(dir, force, Holds::Dataset, &names)?;
     clash::folder(plan, &dataset::replaced(dir, &names))
 }
 
-/// The dataset of what a run played, with the estimates that came back and the run's report.
+/// The dataset of what a run played, with the estimates that came back and the run's own files.
 pub fn after_run(
     plan: &Plan,
     outcome: &Outcome,
-    report: &Report,
+    files: &[(&str, String)],
     dir: &Path,
     force: bool,
 ) -> Result<(), Refusal> {
-    let report = serde_json::to_string_pretty(report)? + "\n";
+    let extra: Vec<_> =
+        files.iter().map(|(name, text)| (name.to_string(), text.clone().into_bytes())).collect();
     let mut progress = |_| {};
     // Ctrl-C that ended the run is no wish to lose its dataset.
     let stop = if outcome.interrupted { Default::default() } else { on_interrupt() };
@@ -237,7 +239,7 @@ pub fn after_run(
         stop: Some(&stop),
         estimates: &outcome.estimates,
         link_faults: &outcome.faults,
-        extra: &[(REPORT.to_string(), report.into_bytes())],
+        extra: &extra,
         ..Options::new(&mut progress)
     };
     let summary = dataset::write(plan, outcome.played, dir, options)?;

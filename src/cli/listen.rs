@@ -1,10 +1,14 @@
 //! `ratetable listen`: the meter on anybody's stream.
 
 use super::progress::Bar;
+use super::show::heard::Clocks;
+use super::show::{LiveArguments, PAGE, Show, ends};
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::dataset::{self, Holds};
+use crate::geometry::Axes;
 use crate::link::{self, Address};
 use crate::listen::{self, Event, Heard, Job, Meter};
+use crate::live::About;
 use crate::parallel;
 use crate::report::chart::{Distribution, Histogram, Marker, histogram};
 use crate::report::{HeardLink, HeardReport, HeardSensor, Host, Limit, number};
@@ -18,7 +22,7 @@ use std::time::Duration;
 /// The files of a recording: the attitude body to north-east-down by the controller's own clock, and the report.
 const RECORDED: [&str; 2] = ["estimate.csv", "report.json"];
 /// The files of the output folder.
-const FILES: [&str; 2] = ["report.json", "intervals.svg"];
+const FILES: [&str; 3] = ["report.json", "intervals.svg", PAGE];
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -43,6 +47,8 @@ pub struct Arguments {
     /// Write the attitude that it tells into this folder, for `ratetable score`
     #[arg(long, value_name = "DIR", requires = "attitude", conflicts_with = "out")]
     record: Option<PathBuf>,
+    #[command(flatten)]
+    live: LiveArguments,
     /// Replace the output folder if there is one
     #[arg(long)]
     force: bool,
@@ -76,22 +82,28 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
         span: span.map(|span| Duration::from_nanos(span.0.unsigned_abs())),
         wait: arguments.wait,
         attitude: arguments.attitude,
+        values: arguments.live.live.is_some() || arguments.out.is_some(),
     };
     // Asked before: a pty is gone when its sender is.
     let baud = match &arguments.from.address {
         Address::Serial { path, .. } if link::is_pty(path) => None,
         address => address.baud(),
     };
-    let heard = hear(&job, span.unwrap_or(SimTime::FOREVER))?;
+    let show = show(arguments, span)?;
+    let heard = match hear(&job, span.unwrap_or(SimTime::FOREVER), &show) {
+        Ok(heard) => heard,
+        Err(refusal) => return Err(show.fail(refusal)),
+    };
     let mut report = report(&arguments.from, &heard, baud);
     report.links[0].attitudes = arguments.attitude.then_some(heard.told.len() as u64);
     report.judge(&arguments.limit)?;
+    let page = show.end(|| ends::heard(&report), None);
     tell(&summary::heard(&report, heard.interrupted));
     if let Some(dir) = &arguments.out {
         let json = serde_json::to_string_pretty(&report)? + "\n";
         let chart = intervals(&arguments.from, &heard.meter, &report.sensors);
-        let [report, intervals] = FILES;
-        let files = [(report, json.into_bytes()), (intervals, chart.into_bytes())];
+        let page = page.unwrap_or_default();
+        let files: Vec<_> = FILES.into_iter().zip([json, chart, page].map(String::into_bytes)).collect();
         dataset::put_all(dir, arguments.force, Holds::Listen, &files)?;
         tell(&format!("{}: written", dir.display()));
     }
@@ -104,12 +116,37 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
     Ok(if report.ok { Verdict::Fine } else { Verdict::Failed })
 }
 
-fn hear(job: &Job, end: SimTime) -> Result<Heard, Refusal> {
+/// Shows a stream to whoever looks on, and keeps it for its page, where either is wanted.
+fn show(arguments: &Arguments, span: Option<SimTime>) -> Result<Show, Refusal> {
+    let link = arguments.from.to_string();
+    let about = About {
+        command: "listen",
+        title: link.clone(),
+        axes: Axes::NedFrd,
+        duration: span,
+        speed: serde_json::Value::Null,
+        reference: None,
+        sensors: Vec::new(),
+        estimators: if arguments.attitude { vec!["controller".into()] } else { Vec::new() },
+        links: vec![link],
+        timeline: Vec::new(),
+    };
+    Show::start(about, None, arguments.live.live, arguments.out.is_some())
+}
+
+fn hear(job: &Job, end: SimTime, show: &Show) -> Result<Heard, Refusal> {
     let bar = Bar::new(end);
-    let heard = listen::listen(job, &mut |event| match event {
-        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
-        Event::Ready(name) => bar.line(&format!("listening: {name}")),
-        Event::Progress(progress) => bar.heard(&progress),
+    let mut clocks = Clocks::default();
+    let heard = listen::listen(job, &mut |event| {
+        if let Some(board) = show.board() {
+            clocks.put(&event, board);
+        }
+        match event {
+            Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
+            Event::Ready(name) => bar.line(&format!("listening: {name}")),
+            Event::Progress(progress) => bar.heard(&progress),
+            _ => {}
+        }
     });
     bar.clear();
     Ok(heard?)

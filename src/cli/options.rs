@@ -1,6 +1,7 @@
 //! Values of options that are not plain strings.
 
 use crate::link::Address;
+use crate::live::At;
 use crate::quantity::{self, Sign};
 use crate::report::Limit;
 use crate::scene::{Destination, Output, Plan};
@@ -31,6 +32,11 @@ pub fn wait(text: &str) -> Result<Duration, String> {
     }
     let ns = quantity::duration_ns(text, Sign::NonNegative).map_err(|error| error.to_string())?;
     Ok(Duration::from_nanos(ns.unsigned_abs()))
+}
+
+/// `--live`: where to show it.
+pub fn at(text: &str) -> Result<At, String> {
+    text.parse()
 }
 
 /// `--speed`: scene seconds a second, or `max`.

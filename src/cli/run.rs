@@ -2,10 +2,14 @@
 
 use super::clash::{self, Besides};
 use super::demo::{Firmware, Received};
+use super::generate::REPORT;
 use super::progress::Bar;
+use super::show::{self, LiveArguments, PAGE, Show, ends};
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::bus;
+use crate::clock::WallClock;
 use crate::link::Address;
+use crate::live::{About, Scene};
 use crate::report::Limit;
 use crate::scene::{Destination, Output, OutputFault, Plan, Target, Tells};
 use crate::session::{self, Event, Job, Judging, Outcome, Speed};
@@ -61,6 +65,8 @@ pub struct Arguments {
     /// Write the dataset played, the estimates that came back and the report into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    live: LiveArguments,
     /// Start although a baud rate does not carry the packets, and replace the output folder if there is one
     #[arg(long)]
     force: bool,
@@ -80,11 +86,15 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     refuse(arguments, &job)?;
     job.ground = ground(arguments.qgc.clone(), &job)?;
     let (mut plan, target, hears) = (job.plan.clone(), job.target(), job.hears());
-    let (outcome, received) = play(job, demonstration)?;
+    let estimator = target.map_or(if demonstration { "vqf" } else { "firmware" }, |target| target.name);
+    let show = show(arguments, &mut job, estimator)?;
+    let (outcome, received) = match play(job, demonstration, &show) {
+        Ok(played) => played,
+        Err(refusal) => return Err(show.fail(refusal)),
+    };
     if let Some(plan) = Arc::get_mut(&mut plan) {
         plan.set(outcome.settings.iter().map(|it| (it.kind, it.setting.clone(), it.written.clone())));
     }
-    let estimator = target.map_or(if demonstration { "vqf" } else { "firmware" }, |target| target.name);
     let mut report = outcome.report(&plan, estimator);
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
@@ -94,6 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
         report.ok = false;
         report.failed.push(format!("no attitude came on {to}"));
     }
+    let page = show.end(|| ends::run(&report), Some(outcome.played));
     tell(&summary::run(&report, &outcome));
     let told = outcome.attitude.is_some();
     if let Some(target) = target.filter(|target| target.tells == Tells::Nothing && !told) {
@@ -103,7 +114,9 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
         ));
     }
     if let Some(dir) = &arguments.out {
-        super::generate::after_run(&plan, &outcome, &report, dir, arguments.force)?;
+        let files =
+            [(REPORT, serde_json::to_string_pretty(&report)? + "\n"), (PAGE, page.unwrap_or_default())];
+        super::generate::after_run(&plan, &outcome, &files, dir, arguments.force)?;
     }
     if arguments.json {
         say(&(serde_json::to_string_pretty(&report)? + "\n"))?;
@@ -269,32 +282,60 @@ fn refuse_bus(arguments: &Arguments, plan: &Plan, outputs: &[Output]) -> Result<
     bus::fit(&plan.sensors, bus.wire.chip).map(|_| ()).map_err(Refusal)
 }
 
-fn play(job: Job, demonstration: bool) -> Result<(Outcome, Option<Received>), Refusal> {
+/// Shows a run to whoever looks on, and keeps it for its page, where either is wanted.
+fn show(arguments: &Arguments, job: &mut Job, estimator: &str) -> Result<Show, Refusal> {
+    let (at, keeps) = (arguments.live.live, arguments.out.is_some());
+    if at.is_none() && !keeps {
+        return Ok(Show::none());
+    }
+    let links: Vec<_> = job.outputs.iter().map(|output| output.to.to_string()).collect();
+    let mut about = About::scene("run", &job.plan, job.end, links);
+    let several = job.outputs.len() > 1;
+    let told = |(output, name): (&Output, &mut String)| {
+        let who = output.to.target.map_or(estimator, |target| target.name);
+        *name = if several { format!("{who} on {}", output.to) } else { who.to_string() };
+    };
+    job.outputs.iter().zip(&mut about.estimators).for_each(told);
+    about.speed = job.speed.report();
+    let paces = job.speed.is_paced() && job.outputs.iter().any(Output::sends);
+    let records = paces.then(|| {
+        let (watch, records) = show::records(WallClock::start());
+        job.watch = Some(watch);
+        records
+    });
+    let scene = Scene { plan: job.plan.clone(), end: job.end, records };
+    Show::start(about, Some(scene), at, keeps)
+}
+
+fn play(job: Job, demonstration: bool, show: &Show) -> Result<(Outcome, Option<Received>), Refusal> {
     let (bar, plan) = (Bar::new(job.end), job.plan.clone());
     let (mut firmware, mut held) = (None, false);
-    let outcome = session::run(job, &mut |event| match event {
-        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
-        Event::Ready(name) => {
-            bar.line(&format!("ready: {name}"));
-            if demonstration {
-                let path = name.split_once('@').map_or(name, |(_, path)| path);
-                bar.line("demonstration: a driver and an AHRS (VQF) open that pty as firmware would");
-                firmware = Some(Firmware::start(path, &plan));
+    let outcome = session::run(job, &mut |event| {
+        show.event(&event);
+        match event {
+            Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
+            Event::Ready(name) => {
+                bar.line(&format!("ready: {name}"));
+                if demonstration {
+                    let path = name.split_once('@').map_or(name, |(_, path)| path);
+                    bar.line("demonstration: a driver and an AHRS (VQF) open that pty as firmware would");
+                    firmware = Some(Firmware::start(path, &plan));
+                }
             }
+            Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
+            Event::Waiting { whom, left } => {
+                bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
+            }
+            Event::Silent(name) => bar.line(&format!("waiting for the controller on {name} to speak")),
+            Event::Still => {
+                held = true;
+                bar.line("holding still until the other side is ready");
+            }
+            Event::Started if held => bar.line("the scene starts"),
+            Event::Started => {}
+            Event::Progress(progress) => bar.live(&progress),
+            _ => {}
         }
-        Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
-        Event::Waiting { whom, left } => {
-            bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
-        }
-        Event::Silent(name) => bar.line(&format!("waiting for the controller on {name} to speak")),
-        Event::Still => {
-            held = true;
-            bar.line("holding still until the other side is ready");
-        }
-        Event::Started if held => bar.line("the scene starts"),
-        Event::Started => {}
-        Event::Progress(progress) => bar.live(&progress),
-        _ => {}
     });
     bar.clear();
     let received = firmware.map(Firmware::end).transpose();

@@ -1,5 +1,6 @@
 //! The report of a run as a person reads it.
 
+use crate::cli::sheet::Sheet;
 use crate::cli::terminal::Stream;
 use crate::report::{AnswersReport, AttitudeReport, BusReport, HeardReport, LinkReport, Report, number};
 use crate::score::DelayKnown;
@@ -22,9 +23,9 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     match report.links.first().and_then(|link| Some((link, link.bus.as_ref()?))) {
         Some((link, bus)) => text += &read_from(report, link, bus),
         None => {
-            text += &sensors(report);
+            text += &sensors(report).text(Stream::Err);
             text.push('\n');
-            text += &links(report);
+            text += &links(report).text(Stream::Err);
         }
     }
     if report.rest_s > 0.0 {
@@ -55,8 +56,8 @@ pub fn run(report: &Report, outcome: &Outcome) -> String {
     text
 }
 
-/// How a driver read the chips on a bus.
-fn read_from(report: &Report, link: &LinkReport, bus: &BusReport) -> String {
+/// How a driver read each sensor of the chips on a bus.
+pub fn read_sensors(report: &Report) -> Sheet {
     let rows = report.sensors.iter().filter_map(|sensor| {
         let read = sensor.read?;
         let counts = [sensor.made, read.samples, read.again, read.missed, read.overflowed, sensor.queued];
@@ -64,7 +65,12 @@ fn read_from(report: &Report, link: &LinkReport, bus: &BusReport) -> String {
         Some([vec![sensor.name.clone(), hz], counts.map(|count| count.to_string()).to_vec()].concat())
     });
     let heading = ["sensor", "read Hz", "made", "read", "read again", "missed", "FIFO lost", "waiting"];
-    let mut text = Stream::Err.table(&heading, &rows.collect::<Vec<_>>());
+    Sheet { heading: heading.to_vec(), rows: rows.collect() }
+}
+
+/// How a driver read the chips on a bus.
+fn read_from(report: &Report, link: &LinkReport, bus: &BusReport) -> String {
+    let mut text = read_sensors(report).text(Stream::Err);
     text += &format!("\n{}: {} transfers", link.name, bus.transfers);
     if let Some(rate) = bus.transfers_per_s {
         text += &format!(", {} a second", number(rate));
@@ -181,7 +187,8 @@ fn played(t: SimTime) -> String {
     format!("{} s", number(t.seconds()))
 }
 
-fn sensors(report: &Report) -> String {
+/// What was made of each sensor, and how late.
+pub fn sensors(report: &Report) -> Sheet {
     let received = report.sensors.iter().any(|sensor| sensor.received_hz.is_some());
     let paced = report.sensors.iter().any(|sensor| sensor.late_us.is_some());
     let mut heading = vec!["sensor", "asked Hz", "sent Hz"];
@@ -201,10 +208,12 @@ fn sensors(report: &Report) -> String {
         }
         row
     });
-    Stream::Err.table(&heading, &rows.collect::<Vec<_>>())
+    let rows = rows.collect();
+    Sheet { heading, rows }
 }
 
-fn links(report: &Report) -> String {
+/// What went over each link.
+pub fn links(report: &Report) -> Sheet {
     let rows = report.links.iter().map(|link| {
         let missed = link.lost_seq.map_or("-".into(), |lost| lost.to_string());
         let load = link.utilisation.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
@@ -221,20 +230,18 @@ fn links(report: &Report) -> String {
             load,
         ]
     });
-    Stream::Err.table(
-        &[
-            "link",
-            "made",
-            "sent",
-            "dropped",
-            "queued",
-            "bytes",
-            "missed by receiver",
-            "most waiting",
-            "of baud rate",
-        ],
-        &rows.collect::<Vec<_>>(),
-    )
+    let heading = [
+        "link",
+        "made",
+        "sent",
+        "dropped",
+        "queued",
+        "bytes",
+        "missed by receiver",
+        "most waiting",
+        "of baud rate",
+    ];
+    Sheet { heading: heading.to_vec(), rows: rows.collect() }
 }
 
 /// A stream that was listened to, on a screenful.
@@ -243,7 +250,7 @@ pub fn heard(report: &HeardReport, interrupted: bool) -> String {
     let span = report.duration_s.map_or("recorded".into(), |span| format!("{} s", number(span)));
     let mut text = format!("\n{span}{ended}\n\n");
     if !report.sensors.is_empty() {
-        text += &heard_sensors(report);
+        text += &heard_sensors(report).text(Stream::Err);
         text += &steps(report);
         text.push('\n');
     }
@@ -302,7 +309,8 @@ fn times(count: u64) -> String {
     if count == 1 { "once".into() } else { format!("{count} times") }
 }
 
-fn heard_sensors(report: &HeardReport) -> String {
+/// How each sensor of a stream arrived.
+pub fn heard_sensors(report: &HeardReport) -> Sheet {
     let live = report.sensors.iter().any(|sensor| sensor.received_hz.is_some());
     let gathered = report.sensors.iter().any(|sensor| sensor.burst_share.is_some());
     let stepped = report.sensors.iter().any(|sensor| sensor.steps_back + sensor.steps_forward > 0);
@@ -337,5 +345,6 @@ fn heard_sensors(report: &HeardReport) -> String {
         row.extend(gathered.then(|| share(sensor.burst_share)));
         row
     });
-    Stream::Err.table(&heading, &rows.collect::<Vec<_>>())
+    let rows = rows.collect();
+    Sheet { heading, rows }
 }

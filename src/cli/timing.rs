@@ -9,18 +9,21 @@ mod results;
 use super::clash::{self, Besides};
 use super::progress::Bar;
 use super::run::written_to_the_end;
+use super::show::{LiveArguments, PAGE, Show};
 use super::{Refusal, Verdict, options, say, tell};
 use crate::clock::WallClock;
 use crate::dataset::{self, DatasetError, Folder, Holds};
 use crate::link::Address;
+use crate::live::{About, Scene};
 use crate::report::{Limit, TimingReport};
 use crate::scene::{Destination, Output, Plan};
-use crate::session::{self, BareTimer, Event, Job, Outcome, SessionError, Tap, Watch};
+use crate::session::{self, BareTimer, Event, Job, Outcome, Record, SessionError, Tap, Watch};
 use crate::time::{NANOS, Rate, SimTime};
 use crate::wire::{self, Protocol};
-use collector::Collector;
+use collector::{Collector, Onward};
 use ledger::Ledger;
 use reader::{Arrivals, Came, Reader};
+use rtrb::Producer;
 use std::cell::RefCell;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -35,7 +38,7 @@ const SLICE: SimTime = SimTime(NANOS);
 /// How long to wait for somebody on a link that is no pty.
 const WAIT: Duration = Duration::from_secs(30);
 /// The files of the output folder.
-const FILES: [&str; 3] = ["timing.csv", "timing.svg", "report.json"];
+const FILES: [&str; 4] = ["timing.csv", "timing.svg", PAGE, "report.json"];
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -61,6 +64,8 @@ pub struct Arguments {
     /// Write every sample's times as timing.csv, a picture and the report into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    live: LiveArguments,
     /// Replace the output folder if there is one
     #[arg(long)]
     force: bool,
@@ -88,14 +93,21 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
     let besides = Besides { out: arguments.out.as_deref(), ground: None, report: arguments.json };
     clash::outputs(&plan, &job.outputs, &besides)?;
     let folder = arguments.out.as_ref().map(|dir| folder(dir, arguments.force)).transpose()?;
-    let measured = measure(job, folder.as_ref())?;
+    let (show, shown) = show(arguments, &job)?;
+    let csv = folder.as_ref().map(|folder| folder.file("timing.csv")).transpose()?;
+    let measured = match measure(job, Onward { csv, shown }, &show) {
+        Ok(measured) => measured,
+        Err(refusal) => return Err(show.fail(refusal)),
+    };
     let mut report = results::report(shape, &plan, &measured);
     measured.outcome.judge(&mut report.run, &[], false)?;
     report.judge(&limits)?;
+    let page = show.end(|| results::end(&report), Some(measured.outcome.played));
     tell(&results::text(&report, measured.outcome.interrupted));
     if let (Some(folder), Some(dir)) = (folder, &arguments.out) {
         let picture = charts::timing(&report, &measured.ledger, &measured.bare());
         folder.put("timing.svg", picture.as_bytes())?;
+        folder.put(PAGE, page.unwrap_or_default().as_bytes())?;
         folder.put("report.json", (serde_json::to_string_pretty(&report)? + "\n").as_bytes())?;
         folder.commit_with_manifest()?;
         tell(&format!("{}: {}", dir.display(), FILES.join(", ")));
@@ -117,6 +129,19 @@ fn job(arguments: &Arguments, plan: Arc<Plan>, output: Output) -> Job {
         cpu: arguments.cpu,
         ..Job::new(plan, vec![output])
     }
+}
+
+/// Shows a run to whoever looks on, and keeps it for its page, where either is wanted; what its records go to.
+fn show(arguments: &Arguments, job: &Job) -> Result<(Show, Option<Producer<Record>>), Refusal> {
+    let (at, keeps) = (arguments.live.live, arguments.out.is_some());
+    let links = job.outputs.iter().map(|output| output.to.to_string()).collect();
+    let mut about = About::scene("timing", &job.plan, job.end, links);
+    about.speed = job.speed.report();
+    let (records, recorded) = rtrb::RingBuffer::new(collector::RING);
+    let scene = Scene { plan: job.plan.clone(), end: job.end, records: Some(recorded) };
+    let show = Show::start(about, Some(scene), at, keeps)?;
+    let wanted = show.board().is_some();
+    Ok((show, wanted.then_some(records)))
 }
 
 /// The output folder, begun.
@@ -167,7 +192,7 @@ impl Measured {
 }
 
 /// Streams, with somebody at the other end where there can be one.
-fn measure(mut job: Job, folder: Option<&Folder>) -> Result<Measured, Refusal> {
+fn measure(mut job: Job, onward: Onward, show: &Show) -> Result<Measured, Refusal> {
     let clock = WallClock::start();
     let (records, recorded) = rtrb::RingBuffer::new(collector::RING);
     let (ring, arrived) = rtrb::RingBuffer::new(collector::RING);
@@ -175,13 +200,12 @@ fn measure(mut job: Job, folder: Option<&Folder>) -> Result<Measured, Refusal> {
     let far = Far::of(address);
     let rate = job.plan.sensors.first().map_or(Rate::hz(1000), |sensor| sensor.rate);
     let ledger = Ledger::new(&job.plan, far != Far::Nobody, SLICE, 0);
-    let csv = folder.map(|folder| folder.file("timing.csv")).transpose()?;
-    let collector = Collector::start(ledger, recorded, arrived, csv);
+    let collector = Collector::start(ledger, recorded, arrived, onward);
     let mut arrivals = Some(Arrivals::new(*protocol, clock, ring));
     let heard = Rc::new(RefCell::new(Came::default()));
     job.tap = arrivals.take_if(|_| far == Far::Loopback).map(|arrivals| tap(arrivals, heard.clone()));
     job.watch = Some(Watch { clock, bare: Some(BareTimer { slice: SLICE, rate }), records });
-    let (outcome, came) = stream(job, arrivals.filter(|_| far == Far::Reader));
+    let (outcome, came) = stream(job, arrivals.filter(|_| far == Far::Reader), show);
     let ledger = collector.end();
     let outcome = outcome?;
     let came = came.map_err(|error| Refusal(format!("the reader at the pty's other end failed: {error}")))?;
@@ -199,23 +223,27 @@ fn measure(mut job: Job, folder: Option<&Folder>) -> Result<Measured, Refusal> {
 fn stream(
     job: Job,
     mut arrivals: Option<Arrivals>,
+    show: &Show,
 ) -> (Result<Outcome, SessionError>, io::Result<Option<Came>>) {
     let bar = Bar::new(job.end);
     let mut reader = None;
-    let outcome = session::run(job, &mut |event| match event {
-        Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
-        Event::Ready(name) => {
-            bar.line(&format!("ready: {name}"));
-            if let Some(arrivals) = arrivals.take() {
-                let path = name.split_once('@').map_or(name, |(_, path)| path);
-                reader = Some(Reader::start(path.into(), arrivals));
+    let outcome = session::run(job, &mut |event| {
+        show.event(&event);
+        match event {
+            Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
+            Event::Ready(name) => {
+                bar.line(&format!("ready: {name}"));
+                if let Some(arrivals) = arrivals.take() {
+                    let path = name.split_once('@').map_or(name, |(_, path)| path);
+                    reader = Some(Reader::start(path.into(), arrivals));
+                }
             }
+            Event::Waiting { whom, left } => {
+                bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
+            }
+            Event::Progress(progress) => bar.live(&progress),
+            _ => {}
         }
-        Event::Waiting { whom, left } => {
-            bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
-        }
-        Event::Progress(progress) => bar.live(&progress),
-        _ => {}
     });
     bar.clear();
     (outcome, reader.map(Reader::end).transpose())

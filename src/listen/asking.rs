@@ -38,6 +38,11 @@ impl Asking {
         self.converse(now, |dialogue, say| dialogue.tick(now, say))
     }
 
+    /// What was told so far, in order of arrival.
+    pub(super) fn told(&self) -> &[Told] {
+        &self.told
+    }
+
     /// What was told, in order of arrival.
     pub(super) fn into_told(self) -> Vec<Told> {
         self.told

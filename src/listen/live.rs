@@ -5,6 +5,7 @@ use super::{Event, Heard, Job, ListenError, Meter, Progress};
 use crate::clock::{Clock, WallClock};
 use crate::interrupt::Interrupt;
 use crate::link::{Address, Link, LinkError, Receiver, Sender};
+use crate::time::SimTime;
 use crate::wire::Protocol;
 use bytes::BytesMut;
 use std::time::Duration;
@@ -45,7 +46,10 @@ pub fn listen(job: &Job, on: &mut dyn FnMut(Event<'_>)) -> Result<Heard, ListenE
         let greeted = matches!(job.address, Address::UdpOut(_)) && !job.attitude;
         let greeted = greeted.then(|| link.sender());
         let asking = job.attitude.then(|| Asking::new(job.protocol, link.sender())).flatten();
-        let meter = if live { Meter::new(job.protocol) } else { Meter::recorded(job.protocol) };
+        let mut meter = if live { Meter::new(job.protocol) } else { Meter::recorded(job.protocol) };
+        if job.values {
+            meter.keep_values();
+        }
         let clock = WallClock::start();
         let ear = Ear { job, name, live, link, receiver, greeted, asking, meter, clock };
         ear.hear(&mut signals, on).await
@@ -71,12 +75,12 @@ impl Ear<'_> {
         on: &mut dyn FnMut(Event<'_>),
     ) -> Result<Heard, ListenError> {
         let start = Instant::now();
-        let (mut first, mut interrupted) = (None, false);
+        let (mut first, mut came, mut interrupted) = (None, None, false);
         let mut ticks = interval(PROGRESS);
         ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut greetings = interval(SECOND);
         let mut questions = interval(QUESTIONS);
-        let (mut greeting, mut recent, mut bytes) = (0u8, Recent::default(), 0);
+        let (mut greeting, mut recent, mut bytes, mut told) = (0u8, Recent::default(), 0, 0);
         let mut buffer = BytesMut::with_capacity(65_536);
         loop {
             let end = first.zip(self.job.span).map(|(first, span): (Instant, Duration)| first + span);
@@ -88,6 +92,8 @@ impl Ear<'_> {
                     }
                     first.get_or_insert_with(Instant::now);
                     self.meter.arrived(&buffer, self.live.then_some(now));
+                    let came = *came.get_or_insert(now);
+                    self.pass_on(now - came, on);
                     let notices = self.asking.as_mut().map(|asking| asking.hear(&buffer, now));
                     notices.into_iter().flatten().for_each(|notice| on(Event::Notice(notice)));
                     buffer.clear();
@@ -100,6 +106,10 @@ impl Ear<'_> {
                     recent.look(&self.meter);
                     let elapsed = first.map_or(Duration::ZERO, |first: Instant| first.elapsed());
                     on(Event::Progress(Progress { elapsed, meter: &self.meter, rates: &recent.rates }));
+                    if let Some(new) = self.asking.as_ref().map(|asking| &asking.told()[told..]) {
+                        on(Event::Told(new));
+                        told += new.len();
+                    }
                 }
                 _ = greetings.tick(), if self.greeted.is_some() || self.asking.is_some() => {
                     self.greet(greeting);
@@ -126,6 +136,14 @@ impl Ear<'_> {
         }
         let told = self.asking.map_or(Vec::new(), Asking::into_told);
         Ok(Heard { name: self.name, interrupted, meter: self.meter, told })
+    }
+
+    /// Passes on what the samples of a read said, which came so many ns after the first.
+    fn pass_on(&mut self, since: i64, on: &mut dyn FnMut(Event<'_>)) {
+        let values = self.meter.take_values();
+        if !values.is_empty() {
+            on(Event::Values(self.live.then_some(SimTime(since)), &values));
+        }
     }
 
     /// Whether the writer of our pty has left and everything is read; the end that we hold does not show it.

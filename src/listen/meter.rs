@@ -3,8 +3,9 @@
 use super::stream::{Arrival, Stream};
 use crate::report::{HeardLink, HeardSensor};
 use crate::sensor::SensorKind;
+use crate::time::SimTime;
 use crate::wire::Protocol;
-use crate::wire::samples::{Counts, Sample, Samples};
+use crate::wire::samples::{Counts, Sample, Samples, Sensed};
 use ratetable_protocols::mavlink::STAMP_LEN;
 use std::fmt;
 
@@ -17,6 +18,17 @@ const KEPT: usize = 16_384;
 /// The number of packets that identify a protocol.
 const ENOUGH: u64 = 3;
 
+/// What a sample said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Value {
+    /// The index of its sensor among the [streams](Meter::streams).
+    pub stream: usize,
+    /// When it was taken by the sender's clock, if the packet says so.
+    pub t: Option<SimTime>,
+    /// The value.
+    pub sensed: Sensed,
+}
+
 /// Measures one stream of bytes.
 pub struct Meter {
     samples: Samples,
@@ -25,6 +37,8 @@ pub struct Meter {
     reads: u64,
     first: Option<i64>,
     last: Option<i64>,
+    /// What the samples said since it was taken last, where that is kept.
+    values: Option<Vec<Value>>,
     /// Bytes of the first read: they arrived before the first interval began.
     before: u64,
     kept: Vec<u8>,
@@ -55,6 +69,7 @@ impl Meter {
             reads: 0,
             first: None,
             last: None,
+            values: None,
             before: 0,
             kept: Vec::new(),
         }
@@ -69,8 +84,13 @@ impl Meter {
         self.reads += 1;
         self.first = self.first.or(now);
         self.last = now.or(self.last);
-        let Meter { samples, streams, reads, kept, .. } = self;
-        samples.feed(bytes, |sample| take(streams, sample, now, *reads));
+        let Meter { samples, streams, reads, kept, values, .. } = self;
+        samples.feed(bytes, |sample| {
+            let stream = take(streams, sample, now, *reads);
+            if let (Some(values), Some(sensed)) = (values.as_mut(), sample.value) {
+                values.push(Value { stream, t: sample.t, sensed });
+            }
+        });
         match samples.counts().packets {
             0 => kept.extend(bytes.iter().take(KEPT - kept.len())),
             _ => *kept = Vec::new(),
@@ -80,7 +100,19 @@ impl Meter {
     /// Reads what is held of a last packet; the stream has ended.
     pub fn finish(&mut self) {
         let Meter { samples, streams, reads, last, .. } = self;
-        samples.finish(|sample| take(streams, sample, *last, *reads));
+        samples.finish(|sample| {
+            take(streams, sample, *last, *reads);
+        });
+    }
+
+    /// From now on keeps what the samples say.
+    pub fn keep_values(&mut self) {
+        self.values = Some(Vec::new());
+    }
+
+    /// What the samples said since this was called last; empty unless it [is kept](Meter::keep_values).
+    pub fn take_values(&mut self) -> Vec<Value> {
+        self.values.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// The counts so far.
@@ -153,8 +185,8 @@ impl Meter {
     }
 }
 
-/// Passes a sample to its stream. A new stream beyond [`STREAMS`] is merged with the last.
-fn take(streams: &mut Vec<Stream>, sample: Sample, now: Option<i64>, read: u64) {
+/// Passes a sample to its stream, whose index it returns. A new stream beyond [`STREAMS`] is merged with the last.
+fn take(streams: &mut Vec<Stream>, sample: Sample, now: Option<i64>, read: u64) -> usize {
     let place = streams.iter().position(|stream| stream.is_of(&sample)).unwrap_or_else(|| {
         if streams.len() < STREAMS {
             let before = streams.iter().filter(|stream| stream.kind() == sample.kind).count();
@@ -168,4 +200,5 @@ fn take(streams: &mut Vec<Stream>, sample: Sample, now: Option<i64>, read: u64) 
     });
     let stamp = sample.packet.arrived.map(|t| t.0);
     streams[place].take(&sample, Arrival { at: stamp.or(now), stamped: stamp.is_some(), read });
+    place
 }

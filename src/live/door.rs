@@ -305,7 +305,7 @@ mod tests {
         assert!(refused(&asked(&[]), 400), "what it speaks has to be said");
         let old = SOCKET.map(|line| line.replace("Version: 13", "Version: 8"));
         let old: Vec<_> = old.iter().map(String::as_str).chain([page]).collect();
-        assert!(refused(&super::tests::asked(&door, "GET /live HTTP/1.1", &old), 400));
+        assert!(refused(&self::asked(&door, "GET /live HTTP/1.1", &old), 400));
     }
 
     #[test]

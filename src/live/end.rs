@@ -4,8 +4,8 @@ use serde::Serialize;
 
 /// What came of a run, a measurement or a study.
 #[derive(Clone, Debug, Default, Serialize)]
+#[serde(tag = "kind", rename = "end")]
 pub struct End {
-    kind: Kind,
     /// Whether nothing failed.
     pub ok: bool,
     /// What failed.
@@ -20,14 +20,6 @@ pub struct End {
     /// Verdicts by row and column.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub grids: Vec<Grid>,
-}
-
-/// The name of this message.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-enum Kind {
-    #[default]
-    #[serde(rename = "end")]
-    End,
 }
 
 /// A figure, as a report prints it.

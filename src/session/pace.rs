@@ -29,7 +29,7 @@ impl Default for Speed {
 
 impl Speed {
     /// The entry for the report: a number, or `max`.
-    pub(super) fn report(self) -> serde_json::Value {
+    pub fn report(self) -> serde_json::Value {
         match self {
             Speed::Times(times) => times.into(),
             Speed::Max => "max".into(),
@@ -37,7 +37,7 @@ impl Speed {
     }
 
     /// Whether packets wait for their due time.
-    pub(super) fn is_paced(self) -> bool {
+    pub fn is_paced(self) -> bool {
         self != Speed::Max
     }
 }

@@ -4,7 +4,7 @@ use super::ledger::{HEADING, Ledger};
 use super::reader::Arrival;
 use crate::dataset::{DatasetError, Sink};
 use crate::session::Record;
-use rtrb::Consumer;
+use rtrb::{Consumer, Producer};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -22,15 +22,15 @@ pub struct Collector {
 }
 
 impl Collector {
-    /// Starts on what the two ends hand over; lines go to `csv`.
+    /// Starts on what the two ends hand over.
     pub fn start(
         ledger: Ledger,
         records: Consumer<Record>,
         arrivals: Consumer<Arrival>,
-        csv: Option<Sink>,
+        to: Onward,
     ) -> Collector {
         let stop = Arc::new(AtomicBool::new(false));
-        let book = Book { ledger, records, arrivals, csv };
+        let book = Book { ledger, records, arrivals, to };
         let stopped = stop.clone();
         Collector { stop, thread: std::thread::spawn(move || book.keep(&stopped)) }
     }
@@ -45,11 +45,20 @@ impl Collector {
     }
 }
 
+/// What becomes of the records.
+#[derive(Default)]
+pub struct Onward {
+    /// Where the ledger's lines go.
+    pub csv: Option<Sink>,
+    /// To whoever looks on; those that do not fit are not shown.
+    pub shown: Option<Producer<Record>>,
+}
+
 struct Book {
     ledger: Ledger,
     records: Consumer<Record>,
     arrivals: Consumer<Arrival>,
-    csv: Option<Sink>,
+    to: Onward,
 }
 
 impl Book {
@@ -74,7 +83,7 @@ impl Book {
         if let Some(error) = failed {
             return Err(error);
         }
-        self.csv.map_or(Ok(()), Sink::close)?;
+        self.to.csv.map_or(Ok(()), Sink::close)?;
         Ok(self.ledger)
     }
 
@@ -85,11 +94,14 @@ impl Book {
         }
         while let Ok(record) = self.records.pop() {
             self.ledger.record(record);
+            if let Some(shown) = &mut self.to.shown {
+                let _ = shown.push(record);
+            }
         }
         self.ledger.settle();
     }
 
     fn write(&mut self, lines: &str) -> Result<(), DatasetError> {
-        self.csv.as_mut().map_or(Ok(()), |csv| csv.put(lines.as_bytes()))
+        self.to.csv.as_mut().map_or(Ok(()), |csv| csv.put(lines.as_bytes()))
     }
 }

@@ -2,7 +2,10 @@
 
 use super::Measured;
 use super::ledger::Sensor;
+use crate::cli::sheet::Sheet;
+use crate::cli::show::ends;
 use crate::cli::terminal::Stream;
+use crate::live::{End, Figure};
 use crate::report::{Baseline, Late, Report, SensorReport, SensorTiming, TimingReport, number};
 use crate::scene::Plan;
 
@@ -49,8 +52,8 @@ pub fn text(report: &TimingReport, interrupted: bool) -> String {
     let ended = if interrupted { ", stopped by the user" } else { "" };
     let to = run.links.first().map_or("", |link| link.to.as_str());
     let mut text = format!("\n{} over {to}: {} s streamed{ended}\n\n", run.scene, number(run.duration_s));
-    text += &sensors(report);
-    text += &lateness(report);
+    text += &(sensors(report).text(Stream::Err) + "\n");
+    text += &lateness(report).text(Stream::Err);
     text += &format!("\n{}\n", ratio(report));
     if let Some(pacing) = run.host.pacing {
         let share = number(100.0 * pacing.pacing_cpu);
@@ -70,7 +73,8 @@ pub fn text(report: &TimingReport, interrupted: bool) -> String {
     text
 }
 
-fn sensors(report: &TimingReport) -> String {
+/// What was made of each sensor, and at what rate.
+pub fn sensors(report: &TimingReport) -> Sheet {
     let rate = |hz: Option<f64>, ppm: Option<f64>| {
         [hz.map_or("-".into(), |hz| format!("{hz:.3}")), ppm.map_or("-".into(), |ppm| format!("{ppm:.1}"))]
     };
@@ -98,10 +102,11 @@ fn sensors(report: &TimingReport) -> String {
         "missed",
         "overdue",
     ];
-    Stream::Err.table(&heading, &report.run.sensors.iter().map(row).collect::<Vec<_>>()) + "\n"
+    Sheet { heading: heading.to_vec(), rows: report.run.sensors.iter().map(row).collect() }
 }
 
-fn lateness(report: &TimingReport) -> String {
+/// How late each sensor was, beside the bare timer.
+pub fn lateness(report: &TimingReport) -> Sheet {
     let cells =
         |values: Option<[f64; 4]>| values.map_or(["-"; 4].map(String::from), |values| values.map(number));
     let late = |late: Late| [late.p50, late.p99, late.p99_9, late.max];
@@ -124,7 +129,24 @@ fn lateness(report: &TimingReport) -> String {
     let bare = cells(report.baseline.late_us.map(late));
     rows.push([vec!["bare timer".to_string()], bare.into(), ["-"; 3].map(String::from).into()].concat());
     let heading = ["late µs", "p50", "p99", "p99.9", "max", "interval std", "transit p50", "p99"];
-    Stream::Err.table(&heading, &rows)
+    Sheet { heading: heading.to_vec(), rows }
+}
+
+/// What came of it, for its page.
+pub fn end(report: &TimingReport) -> End {
+    let of_run = ends::run(&report.run);
+    let tables = [sensors(report).table("Sensors"), lateness(report).table("Lateness beside a bare timer")];
+    let ratio = report.ratio_p99.map(|ratio| Figure {
+        label: "p99 over a bare timer's".into(),
+        value: number(ratio),
+        unit: "times".into(),
+    });
+    let of_links = of_run.tables.into_iter().filter(|table| table.title == "Links");
+    End {
+        figures: ratio.into_iter().chain(of_run.figures).collect(),
+        tables: tables.into_iter().flatten().chain(of_links).collect(),
+        ..of_run
+    }
 }
 
 fn ratio(report: &TimingReport) -> String {
