@@ -48,6 +48,7 @@ pub use board::Board;
 pub use end::{Axis, Cell, Chart, End, Figure, Grid, GridRow, Series, Table};
 pub use message::{Link, Notice};
 
+use crate::geometry::Attitude;
 use crate::scene::Plan;
 use crate::session::Record;
 use crate::time::SimTime;
@@ -148,6 +149,22 @@ impl Ended {
         let messages: Vec<_> = [self.0.begin(), self.0.so_far()].into_iter().chain(end).collect();
         page::with(&messages)
     }
+}
+
+/// Attitudes that are known as they are.
+#[derive(Clone, Debug, Default)]
+pub struct Paths {
+    /// The truth, in order of time.
+    pub truth: Vec<(SimTime, Attitude)>,
+    /// Each estimate: when it held what, and how far it was off in inclination and in heading, deg.
+    pub told: Vec<Vec<(SimTime, Attitude, [f64; 2])>>,
+}
+
+/// A page with everything in it, HTML: attitudes with their errors, and what came of it.
+pub fn page(about: &About, paths: &Paths, end: &End) -> String {
+    let messages =
+        [story::json(&message::Begin::of(about, None)), story::json(&message::More::of(about, paths))];
+    page::with(&messages.into_iter().chain([story::json(end)]).collect::<Vec<_>>())
 }
 
 /// Serves on this address; elsewhere than on loopback, who comes needs a token.

@@ -5,7 +5,6 @@ use super::show::heard::Clocks;
 use super::show::{LiveArguments, PAGE, Show, ends};
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::dataset::{self, Holds};
-use crate::geometry::Axes;
 use crate::link::{self, Address};
 use crate::listen::{self, Event, Heard, Job, Meter};
 use crate::live::About;
@@ -120,16 +119,10 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
 fn show(arguments: &Arguments, span: Option<SimTime>) -> Result<Show, Refusal> {
     let link = arguments.from.to_string();
     let about = About {
-        command: "listen",
-        title: link.clone(),
-        axes: Axes::NedFrd,
         duration: span,
-        speed: serde_json::Value::Null,
-        reference: None,
-        sensors: Vec::new(),
         estimators: if arguments.attitude { vec!["controller".into()] } else { Vec::new() },
-        links: vec![link],
-        timeline: Vec::new(),
+        links: vec![link.clone()],
+        ..About::of_data("listen", link)
     };
     Show::start(about, None, arguments.live.live, arguments.out.is_some())
 }

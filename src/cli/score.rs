@@ -4,6 +4,7 @@ mod book;
 mod charts;
 mod columns;
 mod hints;
+mod page;
 mod sources;
 mod text;
 mod units;

@@ -7,10 +7,13 @@ mod filters;
 mod normals;
 mod outcome;
 mod parsimony;
+mod picture;
 mod stability;
 
+use super::show::PAGE;
 use super::{Refusal, Verdict, say, tell};
 use crate::dataset::{self, Holds};
+use crate::live::{self, About, End, Paths};
 use crate::scene::{Plan, builtin, nearest};
 use outcome::Outcome;
 use std::path::{Path, PathBuf};
@@ -75,6 +78,7 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
         let names = studies.iter().flat_map(|study| {
             study.files.iter().map(|file| file.to_string()).chain([format!("{}.json", study.name)])
         });
+        let names = names.chain([PAGE.to_string()]);
         dataset::may_write(dir, arguments.force, Holds::Study, &names.collect::<Vec<_>>())?;
     }
     let request =
@@ -89,6 +93,7 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
                 outcome::json(request.quick, [outcome])?.into_bytes(),
             ));
         }
+        files.push((PAGE.into(), page(&studies, &outcomes, scene).into_bytes()));
         let files: Vec<_> = files.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())).collect();
         dataset::put_all(dir, arguments.force, Holds::Study, &files)?;
         tell(&format!("{}: written", dir.display()));
@@ -99,6 +104,19 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
         say(&outcomes.iter().map(|outcome| outcome.text.as_str()).collect::<Vec<_>>().join("\n"))?;
     }
     Ok(Verdict::Fine)
+}
+
+/// The studies as a page to ask: points to read, methods to pick.
+fn page(studies: &[&Study], outcomes: &[Outcome], scene: Option<&str>) -> String {
+    let names: Vec<_> = studies.iter().map(|study| study.name).collect();
+    let of = scene.map_or(String::new(), |scene| format!(" of {scene}"));
+    let end = End {
+        ok: true,
+        charts: outcomes.iter().flat_map(|outcome| outcome.charts.clone()).collect(),
+        grids: outcomes.iter().flat_map(|outcome| outcome.grids.clone()).collect(),
+        ..End::default()
+    };
+    live::page(&About::of_data("study", format!("{}{of}", names.join(", "))), &Paths::default(), &end)
 }
 
 /// Which studies, and of which scene: the first word is a study's name, or else the scene of all studies.

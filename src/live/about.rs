@@ -88,6 +88,22 @@ pub fn columns(kind: SensorKind) -> Vec<Column> {
 }
 
 impl About {
+    /// Data that are shown by themselves, in the program's own axes.
+    pub fn of_data(command: &'static str, title: String) -> About {
+        About {
+            command,
+            title,
+            axes: Axes::NedFrd,
+            duration: None,
+            speed: serde_json::Value::Null,
+            reference: None,
+            sensors: Vec::new(),
+            estimators: Vec::new(),
+            links: Vec::new(),
+            timeline: Vec::new(),
+        }
+    }
+
     /// A scene that is played up to `end` to these links, by this command.
     pub fn scene(command: &'static str, plan: &Plan, end: SimTime, links: Vec<String>) -> About {
         let sensor = |it: &SensorPlan| Shown {
@@ -97,16 +113,14 @@ impl About {
             has_truth: true,
         };
         About {
-            command,
-            title: plan.name.clone(),
             axes: plan.axes,
             duration: (end < SimTime::FOREVER).then_some(end),
-            speed: serde_json::Value::Null,
             reference: Some("truth"),
             sensors: plan.sensors.iter().map(sensor).collect(),
             estimators: links.clone(),
             links,
             timeline: timeline(plan),
+            ..About::of_data(command, plan.name.clone())
         }
     }
 }

@@ -1,10 +1,11 @@
 //! What the page gets: messages in JSON, one `begin`, then `more`, and `end`.
 
+use super::Paths;
 use super::about::{About, Span};
 use super::lateness::{Bins, Lateness, Point};
 use super::strip::Strip;
 use super::track::Fix;
-use crate::geometry::Axes;
+use crate::geometry::{Attitude, Axes};
 use crate::sensor::{SensorKind, Shape};
 use crate::time::SimTime;
 use serde::{Serialize, Serializer};
@@ -35,7 +36,7 @@ impl Serialize for Short {
 
 /// Seconds, to the microsecond.
 pub(super) fn seconds(t: SimTime) -> f64 {
-    libm::round(t.0 as f64 * 1e-3) * 1e-6
+    libm::round(t.0 as f64 / 1e3) / 1e6
 }
 
 /// What a column of readings is on the page: its name, its unit, and how it follows from SI units.
@@ -166,6 +167,33 @@ pub(super) struct More {
     pub notices: Vec<Notice>,
 }
 
+impl More {
+    /// Attitudes that are known as they are.
+    pub(super) fn of(about: &About, Paths { truth, told }: &Paths) -> More {
+        let told = told.iter().enumerate();
+        let attitudes = |path: &[(SimTime, Attitude, [f64; 2])]| {
+            Attitudes::of(about.axes, path.iter().map(|&(t, attitude, _)| (t, attitude)))
+        };
+        let column = |path: &[(SimTime, Attitude, [f64; 2])], i: usize| {
+            path.iter().map(|(_, _, errors)| Short(errors[i])).collect()
+        };
+        let errors = |path: &[(SimTime, Attitude, [f64; 2])]| Errors {
+            t: path.iter().map(|(t, ..)| seconds(*t)).collect(),
+            inclination_deg: column(path, 0),
+            heading_deg: column(path, 1),
+        };
+        More {
+            kind: "more",
+            t: truth.last().map(|(t, _)| seconds(*t)),
+            phase: "playing",
+            truth: (!truth.is_empty()).then(|| Attitudes::of(about.axes, truth.iter().copied())),
+            estimates: told.clone().map(|(of, path)| Of { of, what: attitudes(path) }).collect(),
+            errors: told.map(|(of, path)| Of { of, what: errors(path) }).collect(),
+            ..More::default()
+        }
+    }
+}
+
 /// Something of one of the sensors, estimators or links.
 #[derive(Clone, Serialize)]
 pub(super) struct Of<T> {
@@ -182,10 +210,7 @@ pub(super) struct Attitudes {
 
 impl Attitudes {
     /// Attitudes in these axes.
-    pub(super) fn of(
-        axes: Axes,
-        fixes: impl IntoIterator<Item = (SimTime, crate::geometry::Attitude)>,
-    ) -> Attitudes {
+    pub(super) fn of(axes: Axes, fixes: impl IntoIterator<Item = (SimTime, Attitude)>) -> Attitudes {
         let mut it = Attitudes { t: Vec::new(), q: Vec::new() };
         for (t, attitude) in fixes {
             let q = axes.attitude_out(attitude);

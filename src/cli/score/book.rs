@@ -1,7 +1,9 @@
 //! The comparison as files, written while estimates are judged: errors row by row, charts from a few of them.
 
 use super::charts::{self, Drawn};
+use super::page;
 use super::sources::Truth;
+use crate::cli::show::PAGE;
 use crate::dataset::{DatasetError, Folder, Holds, Sink};
 use crate::report::ScoreReport;
 use crate::score::{self, Judged};
@@ -9,7 +11,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// The files of the folder.
-pub(super) const FILES: [&str; 4] = ["report.json", "errors.csv", "attitude.svg", "error.svg"];
+pub(super) const FILES: [&str; 5] = ["report.json", "errors.csv", "attitude.svg", "error.svg", PAGE];
 
 /// The folder being written.
 pub(super) struct Book {
@@ -50,10 +52,11 @@ impl Book {
     pub fn close(mut self, report: &ScoreReport, truth: &Truth, json: &str) -> Result<(), DatasetError> {
         self.errors.close()?;
         self.drawn.sort_by(|a, b| b.restless().total_cmp(&a.restless()));
-        let [json_name, _, attitude, error] = FILES;
+        let [json_name, _, attitude, error, page] = FILES;
         self.folder.put(json_name, json.as_bytes())?;
         self.folder.put(attitude, charts::attitude(report, &self.drawn, truth).as_bytes())?;
         self.folder.put(error, charts::error(report, &self.drawn).as_bytes())?;
+        self.folder.put(page, page::of(report, &self.drawn, truth).as_bytes())?;
         self.folder.commit_with_manifest()
     }
 }

@@ -5,6 +5,7 @@ use crate::geometry::{Axes, Euler};
 use crate::report::chart::{Line, LineKind, Panel, Panels, panels};
 use crate::report::{ScoreReport, Scored, number};
 use crate::score::Row;
+use crate::time::SimTime;
 
 /// As many points of a line are drawn.
 const POINTS: usize = 4000;
@@ -17,6 +18,7 @@ pub(super) struct Drawn {
     every: u64,
     seen: u64,
     t: Vec<f64>,
+    times: Vec<SimTime>,
     /// Attitudes, in the program's own axes.
     attitudes: Vec<crate::geometry::Attitude>,
     /// The whole error, inclination and heading, deg.
@@ -32,6 +34,7 @@ impl Drawn {
             every,
             seen: 0,
             t: Vec::new(),
+            times: Vec::new(),
             attitudes: Vec::new(),
             errors: Default::default(),
         }
@@ -45,9 +48,23 @@ impl Drawn {
             return;
         }
         self.t.push(row.t.seconds());
+        self.times.push(row.t);
         self.attitudes.push(row.attitude);
         let errors = [row.error.total, row.error.inclination, row.error.heading];
         self.errors.iter_mut().zip(errors).for_each(|(column, error)| column.push(error.to_degrees()));
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// When it held what, with the error in inclination and in heading, deg.
+    pub fn path(&self) -> Vec<(SimTime, crate::geometry::Attitude, [f64; 2])> {
+        let [_, inclination, heading] = &self.errors;
+        let errors = inclination.iter().zip(heading).map(|(inclination, heading)| [*inclination, *heading]);
+        let fixes = self.times.iter().zip(&self.attitudes).zip(errors);
+        fixes.map(|((t, attitude), errors)| (*t, *attitude, errors)).collect()
     }
 
     /// How much its error moves from point to point, deg: what moves most is drawn first, behind the others, in every

@@ -1,24 +1,17 @@
 //! The comparison as text.
 
 use super::hints::angle;
+use crate::cli::sheet::Sheet;
 use crate::cli::terminal::Stream;
 use crate::report::{ScoreReport, Scored, number};
 use crate::score::{DelayKnown, Errors, Figures};
 
 pub(super) fn report(report: &ScoreReport) -> String {
-    let judged = || report.estimates.iter().filter_map(|scored| Some((scored, scored.figures.as_ref()?)));
     let mut text = String::new();
-    if judged().next().is_some() {
-        text += &Stream::Err.table(
-            &HEADING,
-            &judged().flat_map(|(scored, figures)| rows(scored, figures)).collect::<Vec<_>>(),
-        );
-        let angles = ["estimate", "roll RMS deg", "max", "pitch RMS deg", "max", "yaw RMS deg", "max"];
+    if judged(report).next().is_some() {
+        text += &errors(report).text(Stream::Err);
         text += "\n";
-        text += &Stream::Err.table(
-            &angles,
-            &judged().map(|(scored, figures)| angles_of(scored, figures)).collect::<Vec<_>>(),
-        );
+        text += &angles(report).text(Stream::Err);
     }
     for remark in &report.truth_remarks {
         text += &format!("{}: {remark}\n", report.truth);
@@ -32,6 +25,23 @@ pub(super) fn report(report: &ScoreReport) -> String {
         text += &format!("FAILED: {failure}\n");
     }
     text
+}
+
+fn judged(report: &ScoreReport) -> impl Iterator<Item = (&Scored, &Figures)> {
+    report.estimates.iter().filter_map(|scored| Some((scored, scored.figures.as_ref()?)))
+}
+
+/// The errors of each estimate.
+pub(super) fn errors(report: &ScoreReport) -> Sheet {
+    let rows = judged(report).flat_map(|(scored, figures)| rows(scored, figures));
+    Sheet { heading: HEADING.to_vec(), rows: rows.collect() }
+}
+
+/// The errors of each estimate by angle.
+pub(super) fn angles(report: &ScoreReport) -> Sheet {
+    let heading = ["estimate", "roll RMS deg", "max", "pitch RMS deg", "max", "yaw RMS deg", "max"];
+    let rows = judged(report).map(|(scored, figures)| angles_of(scored, figures));
+    Sheet { heading: heading.to_vec(), rows: rows.collect() }
 }
 
 const HEADING: [&str; 10] = [

@@ -32,8 +32,8 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
     let rows = accuracy::run(&cases, all_cores(), &|| start.elapsed(), &|done, all| bar.jobs(done, all));
     bar.clear();
     let outcome = Outcome::of("accuracy", &rows, table(&rows, &cases))?;
-    let outcome = outcome.csv(&rows)?.file("accuracy.svg", chart(&rows, &cases))?;
-    outcome.file("accuracy-glance.svg", glance::chart(&rows, &cases))
+    let outcome = outcome.csv(&rows)?.picture("accuracy.svg", &chart(&rows, &cases))?;
+    outcome.picture("accuracy-glance.svg", &glance::chart(&rows, &cases))
 }
 
 /// The built-in motions, and the scene's own.
@@ -60,7 +60,7 @@ fn cases<'a>(request: &Request<'a>) -> Result<Vec<Case<'a>>, Refusal> {
 }
 
 /// Cost against error, a plot a motion, a point a rate.
-fn chart(rows: &[Row], cases: &[Case]) -> String {
+fn chart(rows: &[Row], cases: &[Case]) -> LogLog {
     let motion = |case: &Case| {
         let of: Vec<_> = rows.iter().filter(|row| row.motion == case.name).collect();
         let method = |name: String| {
@@ -73,14 +73,14 @@ fn chart(rows: &[Row], cases: &[Case]) -> String {
             methods: series(of.iter().copied()).into_iter().map(method).collect(),
         }
     };
-    chart::loglog(&LogLog {
+    LogLog {
         title: "What each attitude method costs and how far it ends from the truth".into(),
         subtitle: format!("{}; one thread", rates(cases)),
         x_label: "cost (ns per simulated second)".into(),
         y_label: "error at the end (deg)".into(),
         y_floor: Some(FLOOR),
         motions: cases.iter().map(motion).collect(),
-    })
+    }
 }
 
 /// The rates of most cases, and of each that has others.
@@ -186,6 +186,7 @@ fn series<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::study::picture::Picture;
     use crate::scene::Plan;
 
     fn rows() -> Vec<Row> {
@@ -215,7 +216,12 @@ mod tests {
              paper,A,100,f64,0.001,0.001,2.5,250.0\n\
              coning-2,A,100,f64,,,2.5,250.0\n"
         );
-        assert!(chart(&rows(), &cases(&NONE).unwrap()).starts_with("<svg"));
+        let chart = chart(&rows(), &cases(&NONE).unwrap());
+        assert!(chart.svg().starts_with("<svg"));
+        let asked = chart.charts();
+        let paper = &asked[0].series[0];
+        assert_eq!((asked.len(), paper.name.as_str(), paper.points.len()), (4, "paper", 1));
+        assert_eq!(paper.points[0], (250.0, 1e-3, None));
     }
 
     #[test]

@@ -19,11 +19,11 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
         Some(plan) => allan::run(plan, effort),
         None => allan::run(&Plan::load(SCENE, &[])?, effort),
     };
-    Outcome::of("allan", &points, table(&points))?.csv(&points)?.file("allan.svg", chart(&points))
+    Outcome::of("allan", &points, table(&points))?.csv(&points)?.picture("allan.svg", &chart(&points))
 }
 
 /// A picture a sensor: its axes with their bands, and theory.
-fn chart(points: &[allan::Point]) -> String {
+fn chart(points: &[allan::Point]) -> Vec<chart::Curves> {
     let mut sensors: Vec<_> = points.iter().map(|point| point.sensor).collect();
     sensors.dedup();
     let picture = |sensor: &&str| {
@@ -56,7 +56,7 @@ fn chart(points: &[allan::Point]) -> String {
         let first = axes.first().copied().unwrap_or_default();
         let same = |axis: &str| of(axis).iter().zip(of(first)).all(|(a, b)| a.theory == b.theory);
         let theories = axes.iter().filter(|axis| **axis == first || !same(axis)).map(theory);
-        chart::curves(&chart::Curves {
+        chart::Curves {
             title: format!("Allan deviation of the {sensor}"),
             subtitle:
                 "of reading less error-free reading; theory of white noise, counts, walk and wandering bias"
@@ -66,9 +66,9 @@ fn chart(points: &[allan::Point]) -> String {
             linear: false,
             band: "95 % confidence".into(),
             curves: axes.iter().map(measured).chain(theories).collect(),
-        })
+        }
     };
-    chart::stacked(&sensors.iter().map(picture).collect::<Vec<_>>())
+    sensors.iter().map(picture).collect()
 }
 
 /// Measured and expected deviations nearest to round averaging times, the mean of the three axes.

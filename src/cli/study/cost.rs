@@ -22,11 +22,11 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
         Some(plan) => cost::run(plan, effort, &now),
         None => cost::run(&Plan::load(SCENE, &[])?, effort, &now),
     };
-    Outcome::of("cost", &cost, table(&cost))?.csv(&cost.terms)?.file("cost.svg", chart(&cost))
+    Outcome::of("cost", &cost, table(&cost))?.csv(&cost.terms)?.picture("cost.svg", &chart(&cost))
 }
 
 /// A bar a term, and the floor.
-fn chart(cost: &Cost) -> String {
+fn chart(cost: &Cost) -> chart::Bars {
     let mut before = 0.0;
     let bars = cost.terms.iter().map(|term| {
         let added = term.ns_per_sample - std::mem::replace(&mut before, term.ns_per_sample);
@@ -36,7 +36,7 @@ fn chart(cost: &Cost) -> String {
         let normals = number(cost.normals_per_sample);
         format!(", {} times the cost of its {normals} normal numbers alone", number(ratio))
     });
-    chart::bars(&chart::Bars {
+    chart::Bars {
         title: format!("What a nine-axis sample of {} costs as error terms are added", cost.scene),
         subtitle: format!(
             "one thread, in memory: {} million a second{ratio}",
@@ -46,7 +46,7 @@ fn chart(cost: &Cost) -> String {
         unit: "ns".into(),
         bars: bars.collect(),
         line: cost.floor_samples_per_s.map(|floor| ("its normal numbers alone".into(), 1e9 / floor)),
-    })
+    }
 }
 
 /// What a sample costs with the terms up to each.

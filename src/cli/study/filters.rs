@@ -60,9 +60,9 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
     Outcome::of("filters", &results, text)?
         .csv(&rows)?
         .table("filters-stability.csv", &verdicts)?
-        .file("filters.svg", charts::rates(&rows, &scenes, seeds))?
-        .file("filters-glance.svg", charts::glance(&rows))?
-        .file("filters-stability.svg", charts::verdicts(&verdicts))
+        .picture("filters.svg", &charts::rates(&rows, &scenes, seeds))?
+        .picture("filters-glance.svg", &charts::glance(&rows))?
+        .picture("filters-stability.svg", &charts::verdicts(&verdicts))
 }
 
 /// The built-in scenes, and the one given. Where other studies are asked for too, one that suits no filter is left out.

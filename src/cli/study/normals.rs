@@ -4,7 +4,7 @@ use super::{Outcome, Request, Study};
 use crate::cli::Refusal;
 use crate::cli::progress::Bar;
 use crate::cli::terminal::Stream;
-use crate::report::chart::{self, Level, Point, Points};
+use crate::report::chart::{Level, Point, Points};
 use crate::report::number;
 use crate::study::all_cores;
 use crate::study::normals::{self, Effort, Row};
@@ -21,7 +21,7 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
     let start = Instant::now();
     let rows = normals::run(effort, all_cores(), &|| start.elapsed(), &|done, all| bar.jobs(done, all));
     bar.clear();
-    Outcome::of("normals", &rows, table(&rows))?.csv(&rows)?.file("normals.svg", chart(&rows))
+    Outcome::of("normals", &rows, table(&rows))?.csv(&rows)?.picture("normals.svg", &chart(&rows))
 }
 
 /// A line a way.
@@ -51,7 +51,7 @@ fn table(rows: &[Row]) -> String {
 }
 
 /// Cost across, error up.
-fn chart(rows: &[Row]) -> String {
+fn chart(rows: &[Row]) -> Points {
     const GROUPS: [&str; 3] =
         ["inverse distribution, a table of polynomials", "Box-Muller, arithmetic alone", "ziggurat"];
     let group = |row: &Row| match row.method.split('-').next() {
@@ -68,7 +68,7 @@ fn chart(rows: &[Row]) -> String {
     };
     let shown = rows.first().map_or(f64::NAN, |row| 1.0 / libm::sqrt(row.draws as f64));
     let draws = rows.first().map_or(String::new(), |row| number(row.draws as f64 / 1e6));
-    chart::points(&Points {
+    Points {
         title: "What a normal number costs and how exact it is".into(),
         subtitle: "one thread, random bits included; lower is more exact, further left is cheaper".into(),
         x_label: "cost (ns a number)".into(),
@@ -80,12 +80,13 @@ fn chart(rows: &[Row]) -> String {
         levels: vec![Level { name: format!("{draws} million samples could show"), y: shown }],
         front: true,
         ..Points::default()
-    })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::study::picture::Picture;
 
     #[test]
     fn the_table_and_the_chart_name_every_way_and_the_default() {
@@ -101,7 +102,7 @@ mod tests {
             variance_z: 0.3,
         };
         let rows = [row("ziggurat", false, None), row("box-muller", true, Some(2e-10))];
-        let (text, drawn) = (table(&rows), chart(&rows));
+        let (text, drawn) = (table(&rows), chart(&rows).svg());
         for word in ["ziggurat", "rounding", "box-muller (default)", "0.86", "2.0e-10", "1.4e-3"] {
             assert!(text.contains(word), "{word} in\n{text}");
         }

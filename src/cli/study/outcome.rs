@@ -1,6 +1,8 @@
 //! What a study gives, in every form: text for people, CSV, JSON and pictures.
 
+use super::picture::Picture;
 use crate::cli::Refusal;
+use crate::live::{Chart, Grid};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -12,6 +14,10 @@ pub(super) struct Outcome {
     pub text: String,
     /// The files of the folder, each by its name.
     pub files: Vec<(String, Vec<u8>)>,
+    /// Its pictures, to be asked.
+    pub charts: Vec<Chart>,
+    /// Its tables of verdicts, to be asked.
+    pub grids: Vec<Grid>,
     name: &'static str,
 }
 
@@ -22,7 +28,7 @@ impl Outcome {
             Value::Object(fields) => fields,
             rows => Map::from_iter([(name.to_string(), rows)]),
         };
-        Ok(Outcome { json, text, files: Vec::new(), name })
+        Ok(Outcome { json, text, files: Vec::new(), charts: Vec::new(), grids: Vec::new(), name })
     }
 
     /// With `NAME.csv`: a header and a line a row; what is missing is empty.
@@ -38,6 +44,13 @@ impl Outcome {
             writer.serialize(row)?;
         }
         self.file(name, writer.into_inner()?)
+    }
+
+    /// With a picture: a file, and its points.
+    pub fn picture(mut self, name: &str, picture: &impl Picture) -> Result<Outcome, Refusal> {
+        self.charts.extend(picture.charts());
+        self.grids.extend(picture.grids());
+        self.file(name, picture.svg())
     }
 
     /// With one more file.

@@ -38,7 +38,7 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
     let found = found?;
     let of_its_own = serde_json::json!({ "parsimony": &found });
     let mut outcome = Outcome::of("parsimony", &of_its_own, text(&found))?.csv(&found.rows)?;
-    outcome = outcome.file("parsimony.svg", chart(&found))?.file("lean.toml", found.lean.text.clone())?;
+    outcome = outcome.picture("parsimony.svg", &chart(&found))?.file("lean.toml", found.lean.text.clone())?;
     // The lean scene names its logs as a copy of the scene does, beside it.
     for file in &plan.attached {
         outcome = outcome.file(&file.name, file.contents()?)?;
@@ -47,7 +47,7 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
 }
 
 /// A point a part: its cost, and its effect in what would just be noticed.
-fn chart(found: &Parsimony) -> String {
+fn chart(found: &Parsimony) -> chart::Points {
     // What costs less than the clock can tell lies where that begins.
     let least = found.ns_of_nothing.max(0.1);
     let group = |verdict: Verdict| Verdict::ALL.iter().position(|known| *known == verdict).unwrap_or(0);
@@ -60,7 +60,7 @@ fn chart(found: &Parsimony) -> String {
             spread: None,
         })
     };
-    chart::points(&chart::Points {
+    chart::Points {
         title: format!("What each term of {} costs and what it does", found.scene),
         subtitle: format!(
             "{}, {} seeds; the effect is the largest that the {} % interval of any filter's change allows",
@@ -79,7 +79,7 @@ fn chart(found: &Parsimony) -> String {
             number(least)
         )],
         ..chart::Points::default()
-    })
+    }
 }
 
 /// The table, and what the leaner scene is.

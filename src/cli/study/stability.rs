@@ -17,11 +17,11 @@ fn run(request: &Request) -> Result<Outcome, Refusal> {
     let effort = if request.quick { Effort::QUICK } else { Effort::FULL };
     let rows = stability::run(effort, all_cores(), &|done, all| bar.jobs(done, all));
     bar.clear();
-    Outcome::of("stability", &rows, table(&rows))?.csv(&rows)?.file("stability.svg", chart(&rows))
+    Outcome::of("stability", &rows, table(&rows))?.csv(&rows)?.picture("stability.svg", &chart(&rows))
 }
 
 /// Verdicts, a row a case, a column a method.
-fn chart(rows: &[stability::Row]) -> String {
+fn chart(rows: &[stability::Row]) -> Grid {
     let cell = |case: &str, method: &str| {
         let found = rows.iter().find(|row| row.case == case && row.method == method);
         found.map_or_else(Cell::default, |row| Cell { verdict: verdict(row.verdict), figure: figure(row) })
@@ -30,12 +30,12 @@ fn chart(rows: &[stability::Row]) -> String {
         name: format!("{}: {}", case.name, case.about),
         cells: METHODS.iter().map(|method| cell(case.name, method.name)).collect(),
     };
-    chart::grid(&Grid {
+    Grid {
         title: "Where attitude methods fail".into(),
         subtitle: "a figure is what the row names last; # is the first step at which the method fails".into(),
         columns: METHODS.iter().map(|method| method.name.to_string()).collect(),
         rows: CASES.iter().map(row).collect(),
-    })
+    }
 }
 
 /// How much where it is worse, when where it fails.
@@ -90,6 +90,7 @@ fn sign(verdict: Verdict) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::study::picture::Picture;
 
     #[test]
     fn a_failure_is_told_to_machines_and_to_people() {
@@ -106,6 +107,6 @@ mod tests {
             String::from_utf8_lossy(&outcome.files[0].1),
             "method,case,verdict,figure,first_failing_step\npaper,rate-1e6,fails,inf,1\n"
         );
-        assert!(outcome.text.contains("~ degraded") && chart(&rows).contains("rate-1e6"));
+        assert!(outcome.text.contains("~ degraded") && chart(&rows).svg().contains("rate-1e6"));
     }
 }

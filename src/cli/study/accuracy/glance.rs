@@ -1,7 +1,7 @@
 //! The chart that leads: a few methods on two motions at one rate, with what each gains over the paper's step.
 
 use super::{FLOOR, input};
-use crate::report::chart::{self, Point, Points};
+use crate::report::chart::{Point, Points};
 use crate::report::number;
 use crate::study::accuracy::Row;
 use crate::study::motions::Case;
@@ -16,9 +16,9 @@ const PAPER: &str = "paper";
 const NAMED: [&str; 5] = [PAPER, "exp-average", "magnus-4", "coning-2", "polynomial-fit"];
 
 /// One plot a motion, one below the other.
-pub(super) fn chart(rows: &[Row], cases: &[Case]) -> String {
+pub(super) fn chart(rows: &[Row], cases: &[Case]) -> Vec<Points> {
     let shown = cases.iter().filter(|case| MOTIONS.contains(&case.name.as_str()));
-    chart::stacked(&shown.map(|case| chart::points(&inputs(rows, case))).collect::<Vec<_>>())
+    shown.map(|case| inputs(rows, case)).collect()
 }
 
 /// What is drawn of one motion.
@@ -108,6 +108,7 @@ fn times(ratio: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::study::picture::Picture;
     use crate::study::motions;
 
     fn row(method: &'static str, ns_per_simulated_s: f64, error_deg: f64) -> Row {
@@ -184,7 +185,7 @@ mod tests {
 
     #[test]
     fn motions_that_were_not_run_are_left_out() {
-        let plots = |cases: &[Case]| chart(&rows(), cases).matches("<title>").count();
+        let plots = |cases: &[Case]| chart(&rows(), cases).svg().matches("<title>").count();
         assert_eq!((plots(&motions::built_in()), plots(&motions::quick())), (2, 1));
     }
 }

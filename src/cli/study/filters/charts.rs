@@ -12,7 +12,7 @@ use crate::study::filters::{Row, START_UP};
 const FLOOR: f64 = 1e-3;
 
 /// Cost against error, a plot a scene, a line a filter, a point a rate.
-pub(super) fn rates(rows: &[Row], scenes: &[Scene], seeds: u64) -> String {
+pub(super) fn rates(rows: &[Row], scenes: &[Scene], seeds: u64) -> LogLog {
     let names = names(rows);
     let plot = |scene: &Scene| {
         let filter = |name: &&str| {
@@ -25,7 +25,7 @@ pub(super) fn rates(rows: &[Row], scenes: &[Scene], seeds: u64) -> String {
             methods: names.iter().map(filter).collect(),
         }
     };
-    chart::loglog(&LogLog {
+    LogLog {
         title: "What each attitude filter costs and how far it is from the truth".into(),
         subtitle: format!(
             "a point a gyro rate, {}; mean of {seeds} seeds; -6d without magnetometer, its heading as drift",
@@ -35,7 +35,7 @@ pub(super) fn rates(rows: &[Row], scenes: &[Scene], seeds: u64) -> String {
         y_label: format!("RMS error after {} s (deg)", number(START_UP.seconds())),
         y_floor: Some(FLOOR),
         motions: scenes.iter().map(plot).collect(),
-    })
+    }
 }
 
 fn span(rows: &[Row]) -> String {
@@ -47,7 +47,7 @@ fn span(rows: &[Row]) -> String {
 }
 
 /// Verdicts, a row a case, a column a filter.
-pub(super) fn verdicts(rows: &[stability::Row]) -> String {
+pub(super) fn verdicts(rows: &[stability::Row]) -> Grid {
     let columns = tried(rows);
     let cell = |case: &str, filter: &str| {
         let found = rows.iter().find(|row| row.case == case && row.filter == filter);
@@ -57,14 +57,14 @@ pub(super) fn verdicts(rows: &[stability::Row]) -> String {
         name: format!("{}: {}", case.name, case.about),
         cells: columns.iter().map(|filter| cell(case.name, filter)).collect(),
     };
-    chart::grid(&Grid {
+    Grid {
         title: "Where attitude filters fail".into(),
         subtitle: format!(
             "stable within {STABLE} deg; a figure is the largest error; ! is the error {COME_BACK} s after; # is the first reading past {FAILS} deg or without a number"
         ),
         rows: CASES.iter().map(row).collect(),
         columns: columns.iter().map(ToString::to_string).collect(),
-    })
+    }
 }
 
 /// How much where it is worse, when where it fails.
@@ -87,7 +87,7 @@ fn verdict(verdict: Verdict) -> chart::Verdict {
 }
 
 /// Cost of an update against error, the medians over the scenes at the rate with the least error; a point a filter.
-pub(super) fn glance(rows: &[Row]) -> String {
+pub(super) fn glance(rows: &[Row]) -> chart::Points {
     let point = |name: &&str| {
         let best = at_best(rows, name)?;
         Some(chart::Point {
@@ -98,7 +98,7 @@ pub(super) fn glance(rows: &[Row]) -> String {
             spread: Some(best.range_deg),
         })
     };
-    chart::points(&chart::Points {
+    chart::Points {
         title: "Attitude filters at a glance".into(),
         subtitle: "medians over the scenes, each filter at the rate with its least error".into(),
         x_label: "cost (ns per update)".into(),
@@ -111,7 +111,7 @@ pub(super) fn glance(rows: &[Row]) -> String {
             "drift and heading are not alike: compare within a colour".into(),
         ],
         ..chart::Points::default()
-    })
+    }
 }
 
 /// A filter at the rate with the least error.

@@ -1,5 +1,6 @@
 use super::charts::at_best;
 use super::*;
+use crate::cli::study::picture::Picture;
 use crate::scene::Plan;
 use crate::study::filters::stability::Verdict;
 
@@ -54,9 +55,9 @@ fn a_person_reads_the_errors_the_best_filter_and_the_verdicts() {
     for line in ["vqf      0.50", "vqf 1000 Hz: 0.25 deg", "vqf-6d 100 Hz: 3.00 deg", "X fails"] {
         assert!(text.contains(line), "{line} in\n{text}");
     }
-    let drawn = charts::verdicts(&[failed]);
+    let drawn = charts::verdicts(&[failed]).svg();
     assert!(drawn.contains("#1001") && drawn.contains("not run (") && drawn.contains("nan-gyro"));
-    assert!(charts::rates(&rows(), &scenes, 2).contains("mean of 2 seeds"));
+    assert!(charts::rates(&rows(), &scenes, 2).svg().contains("mean of 2 seeds"));
 }
 
 #[test]
@@ -64,7 +65,7 @@ fn at_a_glance_a_filter_is_at_the_rate_with_its_least_median_where_it_is_never_l
     let best = at_best(&rows(), "vqf").unwrap();
     assert_eq!((best.rate_hz, best.error_deg, best.range_deg), (100, 1.0, (0.5, 1.5)));
     assert_eq!(at_best(&rows(), "fusion"), None);
-    assert!(charts::glance(&rows()).contains("vqf-6d, 100 Hz"));
+    assert!(charts::glance(&rows()).svg().contains("vqf-6d, 100 Hz"));
 }
 
 #[test]
