@@ -63,6 +63,8 @@ pub mod player;
 pub mod quantity;
 mod random;
 pub mod report;
+#[cfg(any(feature = "live", feature = "mcap"))]
+mod ros;
 pub mod scene;
 pub mod schedule;
 pub mod score;

@@ -16,20 +16,20 @@
 //! What a message does not hold has −1 as the first element of its covariance, as the message's own definition wants
 //! it; the other covariances are 0, unknown. Format: MCAP specification, with its ROS 2 profile.
 
-mod messages;
-
 use super::error::DatasetError;
 use super::folder::{Folder, Sink};
 use super::format::{Format, Writer, Written};
 use super::table::{TRUTH, Table};
 use crate::geometry::{Axes, Vector};
+use crate::ros::{
+    Imu, Kind, Stamped, fluid_pressure, frames, imu, magnetic_field, nav_sat_fix, quaternion, vector,
+};
 use crate::scene::Plan;
 use crate::sensor::{SensorKind, SensorPlan};
 use crate::time::SimTime;
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapError, WriteOptions};
 use glam::DVec3;
-use messages::{Imu, Kind, Stamped, fluid_pressure, imu, magnetic_field, nav_sat_fix, quaternion, vector};
 use std::collections::BTreeMap;
 
 pub(super) static FORMAT: Format = Format {
@@ -127,14 +127,6 @@ fn shapes(plan: &Plan, tables: &[Table]) -> Vec<Shape> {
     let readings = plan.sensors.iter().map(sensor);
     let others = tables[TRUTH + 1 + plan.sensors.len()..].iter().map(|table| Shape::Attitude(table.name));
     [Shape::Truth].into_iter().chain(readings).chain(others).collect()
-}
-
-/// What the messages call nav and body axes; without more said, ROS takes them as East-North-Up and Forward-Left-Up.
-fn frames(axes: Axes) -> [&'static str; 2] {
-    match axes {
-        Axes::EnuFlu => ["map", "imu_link"],
-        Axes::NedFrd => ["map_ned", "imu_link_frd"],
-    }
 }
 
 struct Mcap {

@@ -28,6 +28,8 @@ pub struct About {
     pub estimators: Vec<String>,
     /// The links, as the user gave them.
     pub links: Vec<String>,
+    /// The gyroscope and the accelerometer that tick together, if there are such.
+    pub together: Option<(usize, usize)>,
     /// What the scene holds, and when.
     pub timeline: Vec<Span>,
 }
@@ -100,6 +102,7 @@ impl About {
             sensors: Vec::new(),
             estimators: Vec::new(),
             links: Vec::new(),
+            together: None,
             timeline: Vec::new(),
         }
     }
@@ -119,10 +122,19 @@ impl About {
             sensors: plan.sensors.iter().map(sensor).collect(),
             estimators: links.clone(),
             links,
+            together: together(plan),
             timeline: timeline(plan),
             ..About::of_data(command, plan.name.clone())
         }
     }
+}
+
+/// The gyroscope and the accelerometer of a scene, where they have the same ticks.
+fn together(plan: &Plan) -> Option<(usize, usize)> {
+    let find = |kind| plan.sensors.iter().position(|sensor| sensor.kind == kind);
+    let (gyro, accel) = (find(SensorKind::Gyro)?, find(SensorKind::Accel)?);
+    let sensors = &plan.sensors;
+    sensors[gyro].ticks_with(&sensors[accel]).then_some((gyro, accel))
 }
 
 /// Motions, forces, faults and settings of a scene, in order of time.

@@ -1,44 +1,13 @@
-use super::status::Status;
-use super::*;
-use crate::time::SimTime;
+//! Foxglove's WebSocket protocol: what is offered, who wants what, and each message's bytes. No sockets here.
+//!
+//! Source: Foxglove WebSocket protocol v1 (`foxglove.websocket.v1`), whose JSON and frames `foxglove.sdk.v1` shares as
+//! far as they are used here. Messages are those of ROS 2 in CDR, as in the MCAP files of a dataset.
+
+mod channel;
+mod subscriber;
+
+pub(super) use channel::Channels;
+pub(super) use subscriber::Subscriber;
+
+/// The names under which a viewer may ask for it, the one that is taken first.
 pub(super) const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-pub(super) struct Channels;
-pub(super) struct Subscriber;
-impl Channels {
-    pub fn new(_: &About) -> Self {
-        Channels
-    }
-    pub fn server_info(&self, _: &str) -> String {
-        String::new()
-    }
-    pub fn advertise(&self) -> String {
-        String::new()
-    }
-    pub fn unadvertise(&self) -> String {
-        String::new()
-    }
-    pub fn messages(&self, _: &Batch, _: &dyn Fn(u32) -> bool, _: &mut dyn FnMut(u32, SimTime, &[u8])) {}
-    pub fn diagnostics(
-        &self,
-        _: SimTime,
-        _: &[Status],
-        _: &dyn Fn(u32) -> bool,
-        _: &mut dyn FnMut(u32, SimTime, &[u8]),
-    ) {
-    }
-}
-impl Subscriber {
-    pub fn new() -> Self {
-        Subscriber
-    }
-    pub fn hear(&mut self, _: &Channels, _: &str) -> Vec<String> {
-        vec![]
-    }
-    pub fn hear_binary(&mut self, _: &[u8]) -> Vec<String> {
-        vec![]
-    }
-    pub fn wants(&self, _: u32) -> bool {
-        false
-    }
-    pub fn frames(&self, _: u32, _: SimTime, _: &[u8], _: &mut dyn FnMut(Vec<u8>)) {}
-}

@@ -3,9 +3,9 @@
 use super::about::About;
 use super::batch::Batch;
 use super::foxglove::{Channels, Subscriber};
-use super::status::Status;
 use super::story::{Story, json};
 use super::viewer::{Kind, Viewer};
+use crate::ros::Status;
 use crate::time::SimTime;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
@@ -25,7 +25,7 @@ impl Hub {
     pub(super) fn new(about: &About, session: String) -> Hub {
         Hub {
             viewers: RefCell::default(),
-            channels: RefCell::new(Channels::new(about)),
+            channels: RefCell::new(Channels::new(about, None)),
             session,
             closed: Cell::new(false),
         }
@@ -84,7 +84,8 @@ impl Hub {
 
     /// Sensors have come: everybody is told anew what there is.
     pub(super) fn renew(&self, about: &About) {
-        let (before, channels) = (self.channels.borrow().unadvertise(), Channels::new(about));
+        let channels = Channels::new(about, Some(&self.channels.borrow()));
+        let before = self.channels.borrow().unadvertise();
         for viewer in self.viewers.borrow().iter() {
             match &viewer.kind {
                 Kind::Page(told) => told.set(false),

@@ -158,6 +158,11 @@ impl Lateness {
         self.stretches.iter().map(Stretch::point).collect()
     }
 
+    /// The last stretch that is over.
+    pub(super) fn latest(&self) -> Option<Point> {
+        self.stretches.iter().rev().nth(1).map(Stretch::point)
+    }
+
     /// The stretches that are over and were not given before.
     pub(super) fn fresh(&mut self) -> Vec<Point> {
         let over = self.stretches.len().saturating_sub(1);

@@ -177,6 +177,16 @@ impl Story {
         }
     }
 
+    /// A sensor's lateness and rate in the last stretch of time that is over.
+    pub(super) fn latest(&self, sensor: usize) -> Option<Point> {
+        self.late.get(sensor)?.latest()
+    }
+
+    /// Each link's counts.
+    pub(super) fn links(&self) -> &[Link] {
+        &self.links
+    }
+
     /// The first message, in JSON.
     pub(super) fn begin(&self) -> String {
         let thinned = self.strips.iter().map(|strip| &strip.kept).filter(|strip| strip.is_thinned());

@@ -26,6 +26,8 @@ const TICK: Duration = Duration::from_millis(100);
 const BUDGET: Duration = Duration::from_millis(40);
 /// In the end viewers have this long to take what waits for them.
 const LEAVE: Duration = Duration::from_secs(1);
+/// Ticks from one status to the next.
+const STATUS: u64 = 10;
 /// Records of a tick, at most.
 const RECORDED: usize = 16_384;
 /// Readings in a batch, at most: older ones are not sent to viewers that want each.
@@ -48,7 +50,7 @@ pub(super) fn run(task: Task) -> Story {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let (plan, records) = scene.map_or((None, None), |scene| (Some((scene.plan, scene.end)), scene.records));
     let reel = plan.as_ref().map(|(plan, end)| Reel::new(plan, *end, Vec::new()));
-    let show = Show { story, reel, records, recorded: VecDeque::new(), board, keeps };
+    let show = Show { story, reel, records, recorded: VecDeque::new(), ticks: 0, board, keeps };
     match runtime {
         Ok(runtime) => LocalSet::new().block_on(&runtime, show.go(listening)),
         // Nobody can be let in: what happens is taken in all the same.
@@ -61,6 +63,7 @@ struct Show<'a> {
     reel: Option<Reel<'a>>,
     records: Option<Consumer<Record>>,
     recorded: VecDeque<Record>,
+    ticks: u64,
     board: Arc<Board>,
     keeps: bool,
 }
@@ -141,7 +144,9 @@ impl Show<'_> {
             mail.values.into_iter().for_each(|heard| batch.heard(heard));
         }
         hub.tell_pages(&mut self.story);
-        let status = self.story.t.filter(|_| hub.has_subscribers()).map(|t| (t, status::of(&self.story)));
+        self.ticks += 1;
+        let asks = wanted && self.ticks.is_multiple_of(STATUS);
+        let status = self.story.t.filter(|_| asks).map(|t| (t, status::of(&self.story)));
         hub.tell_subscribers(&batch, status.as_ref().map(|(t, status)| (*t, status.as_slice())));
     }
 
@@ -167,4 +172,13 @@ impl Show<'_> {
             self.play(Duration::MAX, None);
         }
     }
+}
+
+/// A whole scene as one batch.
+#[cfg(test)]
+pub(super) fn gathered(plan: &crate::scene::Plan) -> Batch {
+    let mut batch = Batch::default();
+    let mut reel = Reel::new(plan, plan.duration, Vec::new());
+    reel.play(plan.duration, Duration::MAX, &mut |moment| gather(&mut batch, plan.axes, &moment));
+    batch
 }

@@ -73,10 +73,13 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("listen", &["link", "wire", "clock", "sensor", "report", "interrupt"]),
     // A dataset writes the plan as well as the readings: axes, rates, values drawn.
-    ("dataset", &["player", "scene", "sensor", "motion", "parallel"]),
+    ("dataset", &["player", "scene", "sensor", "motion", "parallel", "ros"]),
     // Whether a scene needs a term is for the filters to say.
     ("study", &["player", "motion", "scene", "sensor", "filters", "parallel", "os"]),
     ("parallel", &[]),
+    ("ros", &[]),
+    // What happens is shown as events of a session or of what listens; the scene is played again for its readings.
+    ("live", &["player", "scene", "motion", "sensor", "session", "listen", "report", "ros"]),
     (
         "cli",
         &[
@@ -86,6 +89,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "bus",
             "session",
             "listen",
+            "live",
             "dataset",
             "score",
             "study",
@@ -107,10 +111,10 @@ const ARROWS: &[(&str, &[&str])] = &[
 const OUTSIDE: &[(&str, &[&str])] = &[
     // The demonstration of `cli` runs a firmware, which has a processor of its own; `parallel` spreads jobs that have
     // nothing to do with one another over the processors; `clock` parks the thread that waits on it.
-    ("std::thread", &["session", "link", "cli", "parallel", "clock", "interrupt"]),
+    ("std::thread", &["session", "link", "live", "cli", "parallel", "clock", "interrupt"]),
     // `os` reads what the kernel shows as files of its own: who holds a port, what a device is.
     ("std::fs", &["scene", "dataset", "link", "os", "score"]),
-    ("std::net", &["link"]),
+    ("std::net", &["link", "live"]),
     ("println!", &["cli"]),
     ("print!", &["cli"]),
 ];

@@ -2,18 +2,38 @@
 //!
 //! Source: OMG DDSI-RTPS 2.2, 10.2 (encapsulation `CDR_LE`); definitions of `common_interfaces`, without comments.
 
-use super::super::format::plain;
+use crate::geometry::Axes;
 use crate::time::{NANOS, SimTime};
 
 /// Which message a topic carries.
-#[derive(Clone, Copy)]
-pub(super) enum Kind {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Attitude, angular rate, specific force.
     Imu,
+    /// A magnetic field, tesla.
     MagneticField,
+    /// A pressure, Pa.
     FluidPressure,
+    /// A receiver's position.
     NavSatFix,
+    /// An attitude.
     Quaternion,
+    /// A vector.
     Vector,
+    /// An attitude at a place.
+    Pose,
+    /// How one frame lies in another.
+    Transform,
+    /// How things are.
+    Diagnostics,
+}
+
+/// What the messages call nav and body axes; without more said, ROS takes them as East-North-Up and Forward-Left-Up.
+pub fn frames(axes: Axes) -> [&'static str; 2] {
+    match axes {
+        Axes::EnuFlu => ["map", "imu_link"],
+        Axes::NedFrd => ["map_ned", "imu_link_frd"],
+    }
 }
 
 /// Before the definition of each message that another one holds.
@@ -48,7 +68,7 @@ macro_rules! three {
 
 impl Kind {
     /// Its name and its definition, with those of the messages in it.
-    pub(super) fn schema(self) -> (&'static str, &'static str) {
+    pub fn schema(self) -> (&'static str, &'static str) {
         match self {
             Kind::Imu => (
                 "sensor_msgs/msg/Imu",
@@ -132,26 +152,69 @@ impl Kind {
                     "geometry_msgs/Quaternion": four!()
                 ),
             ),
+            Kind::Pose => (
+                "geometry_msgs/msg/PoseStamped",
+                with!(
+                    "std_msgs/Header header\ngeometry_msgs/Pose pose\n",
+                    "std_msgs/Header": header!(),
+                    "builtin_interfaces/Time": time!(),
+                    "geometry_msgs/Pose": "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n",
+                    "geometry_msgs/Point": three!(),
+                    "geometry_msgs/Quaternion": four!()
+                ),
+            ),
+            Kind::Transform => (
+                "tf2_msgs/msg/TFMessage",
+                with!(
+                    "geometry_msgs/TransformStamped[] transforms\n",
+                    "geometry_msgs/TransformStamped":
+                        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
+                    "std_msgs/Header": header!(),
+                    "builtin_interfaces/Time": time!(),
+                    "geometry_msgs/Transform": "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n",
+                    "geometry_msgs/Vector3": three!(),
+                    "geometry_msgs/Quaternion": four!()
+                ),
+            ),
+            Kind::Diagnostics => (
+                "diagnostic_msgs/msg/DiagnosticArray",
+                with!(
+                    "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n",
+                    "std_msgs/Header": header!(),
+                    "builtin_interfaces/Time": time!(),
+                    "diagnostic_msgs/DiagnosticStatus":
+                        "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n\
+                         byte level\nstring name\nstring message\nstring hardware_id\n\
+                         diagnostic_msgs/KeyValue[] values\n",
+                    "diagnostic_msgs/KeyValue": "string key\nstring value\n"
+                ),
+            ),
         }
     }
 }
 
 /// When, and in which frame's axes.
-#[derive(Clone, Copy)]
-pub(super) struct Stamped {
+#[derive(Clone, Copy, Debug)]
+pub struct Stamped {
+    /// Since the scene began.
     pub t: SimTime,
+    /// The frame's name.
     pub frame: &'static str,
 }
 
 /// What an `Imu` message holds: quaternion `[w, x, y, z]`, rad/s, m/s².
-pub(super) struct Imu {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Imu {
+    /// Body to the frame of the message, w first.
     pub attitude: Option<[f64; 4]>,
+    /// Angular rate, rad/s.
     pub rate: Option<[f64; 3]>,
+    /// Specific force, m/s².
     pub force: Option<[f64; 3]>,
 }
 
 /// `sensor_msgs/msg/Imu`.
-pub(super) fn imu(stamped: Stamped, imu: &Imu, bytes: &mut Vec<u8>) {
+pub fn imu(stamped: Stamped, imu: &Imu, bytes: &mut Vec<u8>) {
     let mut cdr = Cdr::begin(stamped, bytes);
     let [w, x, y, z] = imu.attitude.unwrap_or([1.0, 0.0, 0.0, 0.0]);
     cdr.doubles(&[x, y, z, w]);
@@ -163,20 +226,20 @@ pub(super) fn imu(stamped: Stamped, imu: &Imu, bytes: &mut Vec<u8>) {
 }
 
 /// `sensor_msgs/msg/MagneticField` of a field in µT, which the message holds in tesla.
-pub(super) fn magnetic_field(stamped: Stamped, field: [f64; 3], bytes: &mut Vec<u8>) {
+pub fn magnetic_field(stamped: Stamped, field: [f64; 3], bytes: &mut Vec<u8>) {
     let mut cdr = Cdr::begin(stamped, bytes);
     cdr.doubles(&field.map(|microtesla| microtesla * 1e-6));
     cdr.covariance(true);
 }
 
 /// `sensor_msgs/msg/FluidPressure` of a pressure in Pa; its variance is 0, unknown.
-pub(super) fn fluid_pressure(stamped: Stamped, pressure: f64, bytes: &mut Vec<u8>) {
+pub fn fluid_pressure(stamped: Stamped, pressure: f64, bytes: &mut Vec<u8>) {
     Cdr::begin(stamped, bytes).doubles(&[pressure, 0.0]);
 }
 
 /// `sensor_msgs/msg/NavSatFix` of latitude and longitude in degrees and altitude in m: a GPS fix, its covariance
 /// unknown.
-pub(super) fn nav_sat_fix(stamped: Stamped, place: [f64; 3], bytes: &mut Vec<u8>) {
+pub fn nav_sat_fix(stamped: Stamped, place: [f64; 3], bytes: &mut Vec<u8>) {
     const STATUS_FIX: u8 = 0;
     const SERVICE_GPS: u16 = 1;
     const COVARIANCE_TYPE_UNKNOWN: u8 = 0;
@@ -190,13 +253,57 @@ pub(super) fn nav_sat_fix(stamped: Stamped, place: [f64; 3], bytes: &mut Vec<u8>
 }
 
 /// `geometry_msgs/msg/QuaternionStamped` of `[w, x, y, z]`.
-pub(super) fn quaternion(stamped: Stamped, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
+pub fn quaternion(stamped: Stamped, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
     Cdr::begin(stamped, bytes).doubles(&[x, y, z, w]);
 }
 
 /// `geometry_msgs/msg/Vector3Stamped`.
-pub(super) fn vector(stamped: Stamped, vector: [f64; 3], bytes: &mut Vec<u8>) {
+pub fn vector(stamped: Stamped, vector: [f64; 3], bytes: &mut Vec<u8>) {
     Cdr::begin(stamped, bytes).doubles(&vector);
+}
+
+/// `geometry_msgs/msg/PoseStamped` of an attitude `[w, x, y, z]`, at the origin.
+pub fn pose(stamped: Stamped, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
+    Cdr::begin(stamped, bytes).doubles(&[0.0, 0.0, 0.0, x, y, z, w]);
+}
+
+/// `tf2_msgs/msg/TFMessage` of a frame `child` that lies in the stamped one's axes turned by `[w, x, y, z]`.
+pub fn transform(stamped: Stamped, child: &str, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
+    let mut cdr = Cdr::empty(bytes);
+    cdr.word(1);
+    cdr.header(stamped);
+    cdr.text(child);
+    cdr.doubles(&[0.0, 0.0, 0.0, x, y, z, w]);
+}
+
+/// How something is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// What it is.
+    pub name: String,
+    /// How grave: 0 all is well, 1 a warning, 2 an error.
+    pub level: u8,
+    /// In words.
+    pub message: String,
+    /// Figures by name.
+    pub values: Vec<(String, String)>,
+}
+
+/// `diagnostic_msgs/msg/DiagnosticArray`.
+pub fn diagnostics(stamped: Stamped, status: &[Status], bytes: &mut Vec<u8>) {
+    let mut cdr = Cdr::begin(stamped, bytes);
+    cdr.word(status.len() as u32);
+    for Status { name, level, message, values } in status {
+        cdr.0.push(*level);
+        cdr.text(name);
+        cdr.text(message);
+        cdr.text("");
+        cdr.word(values.len() as u32);
+        for (key, value) in values {
+            cdr.text(key);
+            cdr.text(value);
+        }
+    }
 }
 
 /// A message being written.
@@ -206,18 +313,39 @@ struct Cdr<'a>(&'a mut Vec<u8>);
 const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
 impl Cdr<'_> {
-    /// The encapsulation and the message's header.
-    fn begin(stamped: Stamped, bytes: &mut Vec<u8>) -> Cdr<'_> {
+    /// The encapsulation alone.
+    fn empty(bytes: &mut Vec<u8>) -> Cdr<'_> {
         bytes.clear();
         bytes.extend_from_slice(&ENCAPSULATION);
-        let (seconds, nanos) = (stamped.t.0.div_euclid(NANOS), stamped.t.0.rem_euclid(NANOS));
-        // Good for 68 years of scene.
-        bytes.extend_from_slice(&(seconds as i32).to_le_bytes());
-        bytes.extend_from_slice(&(nanos as u32).to_le_bytes());
-        bytes.extend_from_slice(&(stamped.frame.len() as u32 + 1).to_le_bytes());
-        bytes.extend_from_slice(stamped.frame.as_bytes());
-        bytes.push(0);
         Cdr(bytes)
+    }
+
+    /// The encapsulation and the message's header.
+    fn begin(stamped: Stamped, bytes: &mut Vec<u8>) -> Cdr<'_> {
+        let mut cdr = Cdr::empty(bytes);
+        cdr.header(stamped);
+        cdr
+    }
+
+    fn header(&mut self, Stamped { t, frame }: Stamped) {
+        let (seconds, nanos) = (t.0.div_euclid(NANOS), t.0.rem_euclid(NANOS));
+        // Good for 68 years of scene.
+        self.word(seconds as u32);
+        self.word(nanos as u32);
+        self.text(frame);
+    }
+
+    fn word(&mut self, word: u32) {
+        self.align(4);
+        self.0.extend_from_slice(&word.to_le_bytes());
+    }
+
+    /// A text: its length with the zero at its end, its bytes, the zero. One inside would end it for some readers.
+    fn text(&mut self, text: &str) {
+        let text = text.split('\0').next().unwrap_or_default();
+        self.word(text.len() as u32 + 1);
+        self.0.extend_from_slice(text.as_bytes());
+        self.0.push(0);
     }
 
     /// Goes on at a multiple of so many bytes.
@@ -228,7 +356,8 @@ impl Cdr<'_> {
 
     fn doubles(&mut self, values: &[f64]) {
         self.align(8);
-        values.iter().for_each(|value| self.0.extend_from_slice(&plain(*value).to_le_bytes()));
+        // A zero has no sign here, as in every file of a dataset.
+        values.iter().for_each(|value| self.0.extend_from_slice(&(value + 0.0).to_le_bytes()));
     }
 
     /// Unknown; or, of something that the message does not hold, −1 to say so.
