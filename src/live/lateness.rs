@@ -155,12 +155,12 @@ impl Lateness {
 
     /// Every stretch.
     pub(super) fn points(&self) -> Vec<Point> {
-        self.stretches.iter().map(Stretch::point).collect()
+        self.stretches.iter().map(|it| it.point(self.width)).collect()
     }
 
     /// The last stretch that is over.
     pub(super) fn latest(&self) -> Option<Point> {
-        self.stretches.iter().rev().nth(1).map(Stretch::point)
+        self.stretches.iter().rev().nth(1).map(|it| it.point(self.width))
     }
 
     /// The stretches that are over and were not given before.
@@ -168,15 +168,16 @@ impl Lateness {
         let over = self.stretches.len().saturating_sub(1);
         let from = self.given.min(over);
         self.given = self.given.max(over);
-        self.stretches[from..over].iter().map(Stretch::point).collect()
+        self.stretches[from..over].iter().map(|it| it.point(self.width)).collect()
     }
 }
 
 impl Stretch {
-    fn point(&self) -> Point {
+    /// A stretch of this width; those of all sensors have the same middles.
+    fn point(&self, width: i64) -> Point {
         let span = (self.sent.1 - self.sent.0) as f64 * 1e-9;
         Point {
-            t: SimTime(self.t.0.0 + (self.t.1.0 - self.t.0.0) / 2),
+            t: SimTime(self.t.0.0.div_euclid(width) * width + width / 2),
             hz: (span > 0.0).then(|| (self.count - 1) as f64 / span),
             p50_us: self.bins.quantile_us(0.5),
             p99_us: self.bins.quantile_us(0.99),

@@ -8,7 +8,7 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use glam::DQuat;
@@ -91,11 +91,11 @@ impl Machine {
 
     /// Links and speeds to try, scene seconds a second, until a busy machine misses nothing. A pty's bytes wait for a worker
     /// of the kernel, some 10 ms each way where others keep the processors busy; TCP has none.
-    fn tries(self) -> [(&'static str, f64); 4] {
+    fn tries(self) -> &'static [(&'static str, f64)] {
         const TCP: &str = "tcpin:127.0.0.1:0";
         match self {
-            Self::Host => [("pty", 1.0), ("pty", 0.5), ("pty", 0.25), ("pty", 0.125)],
-            Self::CortexM4 => [("pty", 1.0), (TCP, 1.0), (TCP, 0.5), (TCP, 0.25)],
+            Self::Host => &[("pty", 1.0), ("pty", 0.5), ("pty", 0.25), ("pty", 0.125)],
+            Self::CortexM4 => &[("pty", 1.0), (TCP, 1.0), (TCP, 0.5), (TCP, 0.25), (TCP, 0.125)],
         }
     }
 }
@@ -268,37 +268,53 @@ fn live(
     session::run(job, &mut |_| {}).expect("a run")
 }
 
+/// What one try of a scene came to.
+#[derive(Debug)]
+struct Try {
+    at: &'static str,
+    speed: f64,
+    rms_deg: f64,
+    missed: u64,
+    answers: u64,
+    /// Whether all of it was played.
+    whole: bool,
+}
+
 /// In real time, scored while it plays: the attitude is that of MAVLink on the second UART. A firmware on a busy machine
-/// misses samples, and then its attitude says nothing: the scene is played slower. That changes nothing for this firmware,
-/// whose time is that of the samples.
+/// misses samples, in its own buffers too, where nobody counts them, and then its attitude says nothing: the scene is
+/// played slower. That changes nothing for this firmware, whose time is that of the samples. A fault of the firmware or
+/// of the emulator is there at every speed.
 fn is_scored_live(machine: Machine, name: &str, firmware: &str) {
+    /// Two of these at once would take each other's time.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     if !machine.is_here() {
         return;
     }
     // At 250 Hz the stream needs 8 kB/s: QEMU takes 20 of them from a UART.
     let plan = scene(name, &["gyro.rate=250 Hz", "accel.rate=250 Hz"]);
     let built = build(machine, name, &plan);
-    let mut missed = Vec::new();
-    for (at, speed) in machine.tries() {
+    // After two seconds of rest it tells every 20 ms.
+    let expected = 0.9 * (plan.duration.seconds() / 0.02 - 100.0);
+    let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut tries = Vec::new();
+    for &(at, speed) in machine.tries() {
         let outcome = live(&plan, machine, &built, firmware, (at, speed));
-        let lost: u64 = outcome.sensors.iter().take(2).map(|sensor| sensor.dropped).sum();
         let figures = outcome.attitude.as_ref();
-        let rms_deg = figures.map_or(f64::NAN, |figures| figures.errors.rms_deg);
-        eprintln!(
-            "{name}, {firmware}, {machine:?}, {at} at speed {speed}: {rms_deg:.3} deg RMS, {lost} samples missed"
-        );
-        if lost > 0 || outcome.played < plan.duration {
-            missed.push(lost);
-            continue;
+        let tried = Try {
+            at,
+            speed,
+            rms_deg: figures.map_or(f64::NAN, |figures| figures.errors.rms_deg),
+            missed: outcome.sensors.iter().take(2).map(|sensor| sensor.dropped).sum(),
+            answers: figures.map_or(0, |figures| figures.samples),
+            whole: outcome.played >= plan.duration,
+        };
+        eprintln!("{name}, {firmware}, {machine:?}: {tried:?}");
+        if tried.whole && tried.missed == 0 && tried.answers as f64 > expected && tried.rms_deg < BOUND_DEG {
+            return;
         }
-        let figures = figures.expect("an attitude");
-        assert!(figures.errors.rms_deg < BOUND_DEG, "{figures:?}");
-        // After two seconds of rest it tells every 20 ms.
-        let expected = plan.duration.seconds() / 0.02 - 100.0;
-        assert!(figures.samples as f64 > 0.9 * expected, "{} of {expected}", figures.samples);
-        return;
+        tries.push(tried);
     }
-    panic!("the machine is too busy for any of {:?}: {missed:?} samples missed", machine.tries());
+    panic!("within {BOUND_DEG} deg RMS with {expected} answers at no speed: {tries:#?}");
 }
 
 #[test]
