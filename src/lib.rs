@@ -64,6 +64,8 @@ pub mod quantity;
 mod random;
 pub mod report;
 #[cfg(any(feature = "live", feature = "mcap"))]
+// Each feature sends some of the messages.
+#[cfg_attr(not(all(feature = "live", feature = "mcap")), allow(dead_code))]
 mod ros;
 pub mod scene;
 pub mod schedule;

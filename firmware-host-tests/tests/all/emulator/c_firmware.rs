@@ -268,18 +268,6 @@ fn live(
     session::run(job, &mut |_| {}).expect("a run")
 }
 
-/// What one try of a scene came to.
-#[derive(Debug)]
-struct Try {
-    at: &'static str,
-    speed: f64,
-    rms_deg: f64,
-    missed: u64,
-    answers: u64,
-    /// Whether all of it was played.
-    whole: bool,
-}
-
 /// In real time, scored while it plays: the attitude is that of MAVLink on the second UART. A firmware on a busy machine
 /// misses samples, in its own buffers too, where nobody counts them, and then its attitude says nothing: the scene is
 /// played slower. That changes nothing for this firmware, whose time is that of the samples. A fault of the firmware or
@@ -300,16 +288,16 @@ fn is_scored_live(machine: Machine, name: &str, firmware: &str) {
     for &(at, speed) in machine.tries() {
         let outcome = live(&plan, machine, &built, firmware, (at, speed));
         let figures = outcome.attitude.as_ref();
-        let tried = Try {
-            at,
-            speed,
-            rms_deg: figures.map_or(f64::NAN, |figures| figures.errors.rms_deg),
-            missed: outcome.sensors.iter().take(2).map(|sensor| sensor.dropped).sum(),
-            answers: figures.map_or(0, |figures| figures.samples),
-            whole: outcome.played >= plan.duration,
-        };
-        eprintln!("{name}, {firmware}, {machine:?}: {tried:?}");
-        if tried.whole && tried.missed == 0 && tried.answers as f64 > expected && tried.rms_deg < BOUND_DEG {
+        let rms_deg = figures.map_or(f64::NAN, |figures| figures.errors.rms_deg);
+        let missed: u64 = outcome.sensors.iter().take(2).map(|sensor| sensor.dropped).sum();
+        let answers = figures.map_or(0, |figures| figures.samples);
+        let tried = format!(
+            "{at} at speed {speed}: {rms_deg:.3} deg RMS, {missed} samples missed, {answers} answers, {} played",
+            outcome.played
+        );
+        eprintln!("{name}, {firmware}, {machine:?}, {tried}");
+        let is_whole = outcome.played >= plan.duration && missed == 0 && answers as f64 > expected;
+        if is_whole && rms_deg < BOUND_DEG {
             return;
         }
         tries.push(tried);
