@@ -1,72 +1,143 @@
 //! Live progress on standard error, where that is a terminal.
 
 use super::tell;
+use super::terminal::Stream;
+use crate::geometry::{Axes, Euler};
 use crate::listen;
-use crate::session::{Off, Progress};
+use crate::session::{LinkProgress, Off, Progress};
 use crate::time::SimTime;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// A bar that moves with scene time.
-pub struct Bar(ProgressBar);
+/// Time between two lines about a wait where nobody sees them change.
+const PLAIN_BEAT: Duration = Duration::from_secs(10);
+/// Columns for the bar beside a message, and for one line with the truth and the estimate.
+const WIDE: usize = 80;
+
+/// A bar that moves with scene time, where standard error is a terminal that can move it.
+pub struct Bar {
+    bar: ProgressBar,
+    is_seen: bool,
+    /// The axes in which attitudes are told.
+    axes: Axes,
+    /// Packets that wait.
+    queued: AtomicU64,
+    /// Who is waited for, and how much was left when that was told.
+    waits: Mutex<Option<(String, Duration)>>,
+}
 
 const MILLIS: i64 = 1_000_000;
 
 impl Bar {
-    /// Up to `end`; invisible where standard error is no terminal.
+    /// Up to `end`; invisible where standard error is no terminal, or one that cannot move its cursor.
     pub fn new(end: SimTime) -> Bar {
-        let visible = std::io::stderr().is_terminal();
-        let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let (length, template) = match end {
-            SimTime::FOREVER => (None, "{spinner} {msg}"),
-            end => (Some((end.0 / MILLIS).max(1) as u64), "{bar:30.cyan/blue} {percent:>3} %  {msg}"),
+        Bar::styled(end, Bar::template(end, ""))
+    }
+
+    /// The same for a run, whose attitudes are told in these axes, on a line of their own.
+    pub fn of_run(end: SimTime, axes: Axes) -> Bar {
+        Bar { axes, ..Bar::styled(end, Bar::template(end, "\n{prefix}")) }
+    }
+
+    fn template(end: SimTime, more: &str) -> String {
+        let bar = match (Stream::Err.width() < WIDE, is_plain()) {
+            (true, _) => "{bar:12}",
+            (false, true) => "{bar:30}",
+            (false, false) => "{bar:30.cyan/blue}",
         };
-        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-        Bar(ProgressBar::with_draw_target(length, target).with_style(style))
+        match end {
+            SimTime::FOREVER => format!("{{spinner}} {{wide_msg}}{more}"),
+            _ => format!("{bar} {{percent:>3}} %  {{wide_msg}}{more}"),
+        }
+    }
+
+    fn styled(end: SimTime, template: String) -> Bar {
+        let is_seen =
+            std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|it| it != "dumb");
+        let target = if is_seen { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let length = (end < SimTime::FOREVER).then_some((end.0 / MILLIS).max(1) as u64);
+        let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        Bar {
+            bar: ProgressBar::with_draw_target(length, target).with_style(style),
+            is_seen,
+            axes: Axes::default(),
+            queued: AtomicU64::default(),
+            waits: Mutex::default(),
+        }
+    }
+
+    /// Somebody has to do something, within so long: a line that counts down, or where nobody sees that a line now and
+    /// then.
+    pub fn waiting(&self, whom: &str, left: Duration) {
+        let text = format!("waiting for {whom}, {:.0} s left", left.as_secs_f64().ceil());
+        if self.is_seen {
+            return self.bar.set_message(text);
+        }
+        let mut waits = self.waits.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due =
+            |(told, then): &(String, Duration)| told != whom || then.saturating_sub(left) >= PLAIN_BEAT;
+        if waits.as_ref().is_none_or(is_due) {
+            *waits = Some((whom.to_string(), left));
+            self.line(&text);
+        }
+    }
+
+    /// What waits for links.
+    pub fn links(&self, links: &[LinkProgress]) {
+        self.queued.store(links.iter().map(|link| link.queued).sum(), Ordering::Relaxed);
     }
 
     /// Of steps of which nobody knows how long they take.
     pub fn of_steps() -> Bar {
         let bar = Bar::new(SimTime::FOREVER);
         let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})");
-        bar.0.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-        bar.0.enable_steady_tick(Duration::from_millis(100));
+        bar.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        bar.bar.enable_steady_tick(Duration::from_millis(100));
         bar
     }
 
     /// The step at hand.
     pub fn step(&self, what: String) {
-        self.0.set_message(what);
+        self.bar.set_message(what);
     }
 
     /// Of a count of jobs, whose number is told with the first that is done.
     pub fn of_jobs(name: &'static str) -> Bar {
         let bar = Bar::new(SimTime(MILLIS));
-        bar.0.set_message(name);
+        bar.bar.set_message(name);
         bar
     }
 
     /// Of jobs.
     pub fn jobs(&self, done: usize, all: usize) {
-        self.0.set_length(all as u64);
-        self.0.set_position(done as u64);
+        self.bar.set_length(all as u64);
+        self.bar.set_position(done as u64);
     }
 
     /// Of a live run.
     pub fn live(&self, progress: &Progress) {
-        let Progress { t, still, packets, dropped, error, .. } = progress;
-        let error = error.map_or(String::new(), |off| {
+        let Progress { t, still, packets, dropped, estimate, .. } = progress;
+        self.bar.set_prefix(attitudes(progress, self.axes, Stream::Err.width()));
+        if *still {
+            let text = format!(
+                "holding still until the other side is ready: {:.1} s, {packets} packets",
+                t.seconds()
+            );
+            return self.bar.set_message(text);
+        }
+        let error = estimate.map_or(String::new(), |(_, off)| {
             let Off { roll_deg, pitch_deg, heading_deg, .. } = off;
             format!(", off by roll {roll_deg:+.2}° pitch {pitch_deg:+.2}° heading {heading_deg:+.2}°")
         });
-        if *still {
-            self.0.set_message(format!("held still for {:.1} s, {packets} packets", t.seconds()));
-            return;
-        }
-        let lost = if *dropped > 0 { format!(", {dropped} samples dropped") } else { String::new() };
-        self.0.set_message(format!("{:.1} s, {packets} packets{lost}{error}", t.seconds()));
-        self.0.set_position((t.0 / MILLIS) as u64);
+        let some =
+            |count: u64, what: &str| if count > 0 { format!(", {count} {what}") } else { String::new() };
+        let (queued, lost) =
+            (some(self.queued.load(Ordering::Relaxed), "queued"), some(*dropped, "samples dropped"));
+        self.bar.set_message(format!("{:.1} s, {packets} packets{queued}{lost}{error}", t.seconds()));
+        self.bar.set_position((t.0 / MILLIS) as u64);
     }
 
     /// Of a stream that is listened to.
@@ -80,37 +151,80 @@ impl Bar {
             (lost, damaged) => format!(", {lost} lost, {damaged} damaged"),
         };
         let what = if rates.is_empty() { format!("{} bytes", counts.bytes) } else { rates.join(", ") };
-        self.0.set_message(format!("{:.1} s, {what}{lost}", elapsed.as_secs_f64()));
-        self.0.set_position(u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX));
+        self.bar.set_message(format!("{:.1} s, {what}{lost}", elapsed.as_secs_f64()));
+        self.bar.set_position(u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX));
     }
 
     /// Of a dataset.
     pub fn offline(&self, t: SimTime) {
-        self.0.set_position((t.0 / MILLIS) as u64);
-        self.0.set_message(format!("{:.1} s, {}", t.seconds(), self.pace(1e-3, "times real time")));
+        self.bar.set_position((t.0 / MILLIS) as u64);
+        self.bar.set_message(format!("{:.1} s, {}", t.seconds(), self.pace(1e-3, "times real time")));
     }
 
     /// Of runs of a scene.
     pub fn runs(&self, done: usize, all: usize) {
         self.jobs(done, all);
-        self.0.set_message(format!("{done} of {all} runs, {}", self.pace(1.0, "runs/s")));
+        self.bar.set_message(format!("{done} of {all} runs, {}", self.pace(1.0, "runs/s")));
     }
 
     /// How fast it moves on the whole, a position being so many of what is counted, and how long that leaves.
     fn pace(&self, each: f64, what: &str) -> String {
-        let (elapsed, position) = (self.0.elapsed().as_secs_f64(), self.0.position() as f64);
+        let (elapsed, position) = (self.bar.elapsed().as_secs_f64(), self.bar.position() as f64);
         let rate = position / elapsed.max(1e-9);
-        let left = (self.0.length().unwrap_or_default() as f64 - position).max(0.0) / rate.max(1e-9);
+        let left = (self.bar.length().unwrap_or_default() as f64 - position).max(0.0) / rate.max(1e-9);
         format!("{:.1} {what}, {} left", rate * each, HumanDuration(Duration::from_secs_f64(left.min(1e9))))
     }
 
     /// A line above the bar.
     pub fn line(&self, text: &str) {
-        self.0.suspend(|| tell(text));
+        self.bar.suspend(|| tell(text));
     }
 
     /// Takes it off the screen.
     pub fn clear(&self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Roll, pitch and yaw of the truth, and of the estimate where it fits.
+fn attitudes(progress: &Progress, axes: Axes, width: usize) -> String {
+    let angles = |attitude| {
+        let Euler { roll, pitch, yaw } = Euler::from_quat(axes.attitude_out(attitude));
+        let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::to_degrees);
+        format!("{roll:+7.1}° {pitch:+6.1}° {yaw:+7.1}°")
+    };
+    let truth = format!("roll, pitch, yaw: true {}", angles(progress.truth));
+    let both = progress.estimate.map(|(attitude, _)| format!("{truth}  estimated {}", angles(attitude)));
+    both.filter(|both| both.chars().count() < width).unwrap_or(truth)
+}
+
+/// Whether the user wants no colours.
+fn is_plain() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|it| !it.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Attitude;
+
+    #[test]
+    fn the_estimate_is_told_where_there_is_room() {
+        let off = Off { total_deg: 0.0, roll_deg: 0.0, pitch_deg: 0.0, heading_deg: 0.0 };
+        let progress = Progress {
+            t: SimTime::ZERO,
+            stream: SimTime::ZERO,
+            still: false,
+            packets: 0,
+            dropped: 0,
+            truth: Attitude::from_quat(Euler { roll: -3.0, pitch: -1.5, yaw: -3.0 }.to_quat()),
+            estimate: Some((Attitude::IDENTITY, off)),
+        };
+        for (width, estimated) in [(60, false), (80, true), (120, true)] {
+            let text = attitudes(&progress, Axes::NedFrd, width);
+            assert!(text.chars().count() < width, "{text}");
+            assert_eq!(text.contains("estimated"), estimated, "{text}");
+            assert!(text.contains(" -171.9°  -85.9°  -171.9°"), "{text}");
+        }
     }
 }

@@ -308,7 +308,7 @@ fn show(arguments: &Arguments, job: &mut Job, estimator: &str) -> Result<Show, R
 }
 
 fn play(job: Job, demonstration: bool, show: &Show) -> Result<(Outcome, Option<Received>), Refusal> {
-    let (bar, plan) = (Bar::new(job.end), job.plan.clone());
+    let (bar, plan) = (Bar::of_run(job.end, job.plan.axes), job.plan.clone());
     let (mut firmware, mut held) = (None, false);
     let outcome = session::run(job, &mut |event| {
         show.event(&event);
@@ -323,10 +323,8 @@ fn play(job: Job, demonstration: bool, show: &Show) -> Result<(Outcome, Option<R
                 }
             }
             Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
-            Event::Waiting { whom, left } => {
-                bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
-            }
-            Event::Silent(name) => bar.line(&format!("waiting for the controller on {name} to speak")),
+            Event::Waiting { whom, left } => bar.waiting(whom, left),
+            Event::Links(links) => bar.links(links),
             Event::Still => {
                 held = true;
                 bar.line("holding still until the other side is ready");

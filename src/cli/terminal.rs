@@ -27,9 +27,14 @@ impl Stream {
         }
     }
 
-    /// A table that fits: 120 characters a line where it is no terminal.
+    /// Characters a line: 120 where it is no terminal.
+    pub fn width(self) -> usize {
+        self.terminal().unwrap_or(UNSEEN)
+    }
+
+    /// A table that fits.
     pub fn table(self, heading: &[&str], rows: &[Vec<String>]) -> String {
-        table_within(heading, rows, self.terminal().unwrap_or(UNSEEN))
+        table_within(heading, rows, self.width())
     }
 
     /// Text with its long lines broken at spaces on a terminal, what follows indented by two more than the line. In a

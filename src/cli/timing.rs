@@ -225,7 +225,7 @@ fn stream(
     mut arrivals: Option<Arrivals>,
     show: &Show,
 ) -> (Result<Outcome, SessionError>, io::Result<Option<Came>>) {
-    let bar = Bar::new(job.end);
+    let bar = Bar::of_run(job.end, job.plan.axes);
     let mut reader = None;
     let outcome = session::run(job, &mut |event| {
         show.event(&event);
@@ -238,9 +238,8 @@ fn stream(
                     reader = Some(Reader::start(path.into(), arrivals));
                 }
             }
-            Event::Waiting { whom, left } => {
-                bar.line(&format!("waiting for {whom} ({:.0} s)", left.as_secs_f64().ceil()))
-            }
+            Event::Waiting { whom, left } => bar.waiting(whom, left),
+            Event::Links(links) => bar.links(links),
             Event::Progress(progress) => bar.live(&progress),
             _ => {}
         }

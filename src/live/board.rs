@@ -109,9 +109,6 @@ impl Board {
                 let left = left.as_secs_f64().ceil();
                 mail.waiting = Some(format!("waiting for {whom}, {left:.0} s left"));
             }
-            Event::Silent(name) => {
-                mail.waiting = Some(format!("waiting for the controller on {name} to speak"));
-            }
             Event::Still => {
                 mail.phase = Phase::Still;
                 mail.waiting = Some("holding still until the other side is ready".into());

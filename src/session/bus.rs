@@ -107,7 +107,7 @@ async fn attend(
                 News::Set(change) => outside.tell(Event::Set(&change)),
                 News::Notice(notice) => outside.notice(notice),
                 News::Waiting(left) => {
-                    outside.tell(Event::Waiting { whom: format!("a driver to open {name}"), left });
+                    outside.tell(Event::Waiting { whom: &format!("a driver to open {name}"), left });
                 }
                 News::Still => outside.tell(Event::Still),
                 News::Started => outside.tell(Event::Started),

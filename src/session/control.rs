@@ -10,7 +10,7 @@ use super::granted::Granted;
 use super::heard::Heard;
 use super::hold::Hold;
 use super::lane::Lane;
-use super::open::OpenOutput;
+use super::open::{BEAT, OpenOutput};
 use super::outside::Outside;
 use super::pace::Pace;
 use super::pacer::Pacer;
@@ -203,7 +203,7 @@ impl Control {
         let waited = self.job.wait;
         let deadline = Instant::now() + waited;
         let mut ticks = interval(TICK);
-        let mut told = false;
+        let mut told: Option<Instant> = None;
         loop {
             self.tick(outside);
             let Some(silent) = self.talk.borrow().silent().filter(|_| !waited.is_zero()) else {
@@ -214,8 +214,10 @@ impl Control {
                 let came = self.talk.borrow().sides[silent].what_came();
                 return Err(SessionError::Unheard { link: name.to_string(), waited, came });
             }
-            if !std::mem::replace(&mut told, true) {
-                outside.tell(Event::Silent(name));
+            if told.is_none_or(|told| told.elapsed() >= BEAT) {
+                told = Some(Instant::now());
+                let whom = format!("the controller on {name} to speak");
+                outside.tell(Event::Waiting { whom: &whom, left: deadline - Instant::now() });
             }
             tokio::select! {
                 _ = ticks.tick() => {}
@@ -344,13 +346,15 @@ impl Control {
     pub(super) fn progress(&self) -> Progress {
         let stream = self.shared.sent();
         let scene = self.shared.scene_time(stream);
+        let at = scene.unwrap_or_default().min(self.job.end);
         Progress {
+            truth: self.job.plan.trajectory.at(at).attitude,
             t: scene.unwrap_or(stream),
             stream,
             still: scene.is_none(),
             packets: self.shared.packets.get(),
             dropped: self.shared.dropped.get(),
-            error: self.talk.borrow().heard.newest,
+            estimate: self.talk.borrow().heard.newest,
         }
     }
 

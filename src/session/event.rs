@@ -17,15 +17,13 @@ pub enum Event<'a> {
     Ready(&'a str),
     /// A ground station link is open at this address.
     Ground(&'a str),
-    /// Nobody has connected to that link yet, and the run waits.
+    /// Somebody has to come before anything is streamed: told once a second.
     Waiting {
-        /// Whom the run waits for, and where.
-        whom: String,
+        /// Who has to do what: `a reader to open /tmp/imu`.
+        whom: &'a str,
         /// The longest remaining wait.
         left: Duration,
     },
-    /// The controller on that link has not spoken yet: nothing is streamed before it does.
-    Silent(&'a str),
     /// The stream starts with the vehicle held still.
     Still,
     /// The scene starts.
@@ -86,6 +84,8 @@ pub struct Progress {
     pub packets: u64,
     /// Samples lost.
     pub dropped: u64,
-    /// Error of the newest estimate.
-    pub error: Option<Off>,
+    /// The truth at that time; body to nav.
+    pub truth: Attitude,
+    /// The newest estimate, and its error.
+    pub estimate: Option<(Attitude, Off)>,
 }

@@ -26,8 +26,8 @@ pub(super) struct Heard {
     speed: Speed,
     /// Whether stream time waits for the other side.
     lockstep: bool,
-    /// Error of the newest estimate of all.
-    pub newest: Option<Off>,
+    /// The newest estimate of all, and its error.
+    pub newest: Option<(Attitude, Off)>,
 }
 
 /// The verdict on the estimates.
@@ -73,7 +73,7 @@ impl Heard {
             Stamp::Own(ns) => score::HeldAt::Own(ns),
             Stamp::Arrival => score::HeldAt::Arrival,
         };
-        self.newest = Some(Off::between(self.plan.trajectory.at(t).attitude, attitude));
+        self.newest = Some((attitude, Off::between(self.plan.trajectory.at(t).attitude, attitude)));
         Some(Timed { arrival, stamp, attitude })
     }
 

@@ -9,11 +9,13 @@ use crate::report::LinkReport;
 use crate::scene::Output;
 use std::pin::pin;
 use std::time::Duration;
-use tokio::time::{Instant, sleep, timeout_at};
+use tokio::time::{Instant, interval_at, timeout_at};
 
 /// No waiting notice for a reader that comes within this time: a command or a demonstration opens its link by
 /// itself.
 const PATIENCE: Duration = Duration::from_millis(500);
+/// Time between two words about a wait.
+pub(super) const BEAT: Duration = Duration::from_secs(1);
 
 /// After a reader is gone for this long, the user gets a notice.
 const GONE: Duration = Duration::from_secs(1);
@@ -110,8 +112,7 @@ impl OpenOutput {
         let hint = self.output.to.target.map_or("", |target| target.nobody);
         let hint = if hint.is_empty() { String::new() } else { format!("{hint}; ") };
         let mut peer = pin!(timeout_at(deadline, self.link.peer()));
-        let mut patience = pin!(sleep(PATIENCE));
-        let mut told = false;
+        let mut beats = interval_at(Instant::now() + PATIENCE, BEAT);
         loop {
             tokio::select! {
                 peer = &mut peer => {
@@ -119,10 +120,7 @@ impl OpenOutput {
                     return Ok(true);
                 }
                 () = outside.ends() => return Ok(false),
-                () = &mut patience, if !told => {
-                    told = true;
-                    outside.tell(Event::Waiting { whom: whom.clone(), left: deadline - Instant::now() });
-                }
+                _ = beats.tick() => outside.tell(Event::Waiting { whom: &whom, left: deadline - Instant::now() }),
             }
         }
     }

@@ -1,11 +1,11 @@
 //! The program's guidance as a process: help with examples that work, completions, manual pages, lists, and messages
 //! for what cannot be.
 
-use assert_cmd::Command;
+use assert_cmd::Command as Asserted;
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Child, Command, Stdio};
 
 const COMMANDS: [&str; 10] =
     ["run", "timing", "generate", "check", "listen", "score", "study", "list", "completions", "man"];
@@ -18,7 +18,7 @@ struct Said {
 
 fn ratetable_in(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Said {
     let output =
-        Command::cargo_bin("ratetable").unwrap().current_dir(folder).args(arguments).output().unwrap();
+        Asserted::cargo_bin("ratetable").unwrap().current_dir(folder).args(arguments).output().unwrap();
     Said {
         code: output.status.code().unwrap_or(-1),
         out: String::from_utf8(output.stdout).unwrap(),
@@ -102,7 +102,7 @@ fn an_example_that_needs_hardware_is_understood_and_says_what_lacks() {
 
 /// Whether there is such a program.
 fn there_is(program: &str) -> bool {
-    let mut command = std::process::Command::new(program);
+    let mut command = Command::new(program);
     command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
@@ -212,7 +212,7 @@ fn what_cannot_be_is_said_with_what_would_be_right() {
     let said = ratetable_in(folder.path(), &[OsStr::new("check"), broken]);
     assert_eq!(said.code, 2);
     assert!(said.err.contains("argument 2, \"sc\\xFFne.toml\", is not UTF-8"), "{}", said.err);
-    let mut listen = std::process::Command::new(assert_cmd::cargo::cargo_bin("ratetable"));
+    let mut listen = Command::new(assert_cmd::cargo::cargo_bin("ratetable"));
     let nothing = listen.args(["listen", "csv@-"]).stdin(Stdio::null()).output().unwrap();
     let nothing = (nothing.status.code(), String::from_utf8_lossy(&nothing.stderr).into_owned());
     assert!(nothing.0 == Some(2) && nothing.1.contains("not a byte came from -"), "{nothing:?}");
@@ -220,6 +220,23 @@ fn what_cannot_be_is_said_with_what_would_be_right() {
 
 /// What the program prints on a terminal of so many columns.
 fn on_a_terminal(columns: u16, arguments: &[&str]) -> String {
+    let text = through_a_terminal(columns, |command, slave| command.args(arguments).stdout(slave).spawn());
+    text.replace('\r', "")
+}
+
+/// What a person sees of the program who looks on, escape sequences included; with these variables.
+fn looked_on(columns: u16, arguments: &[&str], variables: &[(&str, &str)]) -> String {
+    through_a_terminal(columns, |command, slave| {
+        command.env("TERM", "xterm").envs(variables.iter().copied());
+        command.args(arguments).stderr(slave).stdout(Stdio::null()).spawn()
+    })
+}
+
+/// What arrives at a terminal that a program is started on.
+fn through_a_terminal(
+    columns: u16,
+    start: impl FnOnce(&mut Command, Stdio) -> std::io::Result<Child>,
+) -> String {
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
     grantpt(&master).unwrap();
@@ -228,8 +245,8 @@ fn on_a_terminal(columns: u16, arguments: &[&str]) -> String {
     let slave = std::fs::OpenOptions::new().read(true).write(true).open(name).unwrap();
     let size = rustix::termios::Winsize { ws_row: 50, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 };
     rustix::termios::tcsetwinsize(&slave, size).unwrap();
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("ratetable"));
-    let mut child = command.args(arguments).stdout(Stdio::from(slave)).spawn().unwrap();
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("ratetable"));
+    let mut child = start(&mut command, Stdio::from(slave)).unwrap();
     // Nobody but the child has the other end now: it is over when the child is.
     drop(command);
     let mut text = Vec::new();
@@ -237,8 +254,69 @@ fn on_a_terminal(columns: u16, arguments: &[&str]) -> String {
     while let Ok(count @ 1..) = rustix::io::read(&master, &mut piece) {
         text.extend_from_slice(&piece[..count]);
     }
-    assert!(child.wait().unwrap().success());
-    String::from_utf8(text).unwrap().replace('\r', "")
+    child.wait().unwrap();
+    String::from_utf8(text).unwrap()
+}
+
+/// Without what moves the cursor, clears and colours.
+fn bare(text: &str) -> String {
+    let mut bare = String::new();
+    let mut characters = text.chars();
+    while let Some(c) = characters.next() {
+        match c {
+            '\u{1b}' => drop(characters.by_ref().find(|c| c.is_ascii_alphabetic())),
+            '\r' => bare.push('\n'),
+            c => bare.push(c),
+        }
+    }
+    bare
+}
+
+#[test]
+fn what_moves_on_a_terminal_keeps_to_its_columns_and_tells_the_attitude() {
+    for columns in [60, 80, 120] {
+        let seen = looked_on(columns, &["run", "table-1", "--for", "1500ms"], &[]);
+        assert!(seen.contains("\u{1b}["), "it moves: {seen:?}");
+        let lines = bare(&seen);
+        // What comes before and after the bar is folded nowhere: it can be searched for in a log.
+        let moving = lines.lines().filter(|line| line.contains(" %  ") || line.contains("roll, pitch, yaw"));
+        let moving: Vec<_> = moving.collect();
+        let widest = moving.iter().map(|line| line.chars().count()).max().unwrap();
+        assert!(widest <= usize::from(columns), "{columns}: {moving:?}");
+        assert!(moving.iter().any(|line| line.contains("packets")), "{columns}: {moving:?}");
+        let estimated = moving.iter().any(|line| line.contains("true") && line.contains("estimated"));
+        assert_eq!(estimated, columns >= 80, "{columns}: {moving:?}");
+    }
+}
+
+#[test]
+fn a_wait_counts_down_where_it_is_seen_and_is_said_once_where_it_is_not() {
+    let wait = ["run", "still", "--to", "mpu@tcpin:0", "--wait", "3s"];
+    let seen = bare(&looked_on(80, &wait, &[]));
+    for left in [3, 2, 1] {
+        assert!(seen.contains(&format!(", {left} s left")), "{left} in {seen}");
+    }
+    for said in [ratetable(&wait).err, looked_on(80, &wait, &[("TERM", "dumb")])] {
+        assert_eq!(said.matches("waiting for").count(), 1, "{said}");
+        assert!(!said.contains('\u{1b}'), "{said:?}");
+    }
+}
+
+#[test]
+fn who_wants_no_colour_gets_none() {
+    let colours = |variables: &[(&str, &str)]| {
+        let seen = looked_on(80, &["run", "table-1", "--for", "300ms"], variables);
+        // What sets a colour ends in `m`.
+        seen.split("\u{1b}[")
+            .skip(1)
+            .filter(|rest| {
+                let end = rest.find(|c: char| c.is_ascii_alphabetic());
+                end.is_some_and(|end| rest[end..].starts_with('m') && !matches!(&rest[..end], "" | "0"))
+            })
+            .count()
+    };
+    assert_eq!(colours(&[("NO_COLOR", "1")]), 0);
+    assert!(colours(&[("CLICOLOR_FORCE", "1")]) > 0, "control");
 }
 
 #[test]
@@ -275,7 +353,7 @@ fn a_reader_that_is_waited_for_is_asked_for_by_the_path_to_open() {
     let path = folder.path().join("imu");
     let to = format!("mpu@pty:{}", path.display());
     let said = ratetable(&["run", "still", "--to", &to, "--wait", "1s"]);
-    let expected = format!("waiting for a reader to open {} (1 s)", path.display());
+    let expected = format!("waiting for a reader to open {}, 1 s left", path.display());
     assert!(said.code == 2 && said.err.contains(&expected), "{}", said.err);
     let said = ratetable(&["run", "still", "--to", "mpu@tcpin:0", "--wait", "1s"]);
     assert!(said.err.contains("waiting for somebody to connect to 127.0.0.1:"), "{}", said.err);

@@ -16,6 +16,7 @@ mod generate;
 mod help;
 mod links;
 mod listen;
+mod live;
 mod nothing_lost;
 mod pages;
 mod parts;

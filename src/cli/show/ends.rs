@@ -40,11 +40,12 @@ fn figures(report: &Report) -> Vec<Figure> {
         figures.push(Figure { label: "answers".into(), value: of.samples.to_string(), unit: String::new() });
         figures.extend(of.delay_ms.map(|ms| figure("answers late", ms, "ms")));
     }
-    for sensor in &report.sensors {
-        if let Some(Late { p99, max, .. }) = sensor.late_us {
-            figures.push(figure(format!("{} late, p99", sensor.name), p99, "µs"));
-            figures.push(figure(format!("{} late, at most", sensor.name), max, "µs"));
-        }
+    // The others are in the table.
+    if let Some(sensor) = report.sensors.first()
+        && let Some(Late { p99, max, .. }) = sensor.late_us
+    {
+        figures.push(figure(format!("{} late, p99", sensor.name), p99, "µs"));
+        figures.push(figure(format!("{} late, at most", sensor.name), max, "µs"));
     }
     let dropped: u64 = report.sensors.iter().map(|sensor| sensor.dropped).sum();
     figures.push(Figure { label: "dropped".into(), value: dropped.to_string(), unit: "samples".into() });

@@ -55,7 +55,7 @@ function frame(g, box, x, y, { xLabels = true, xCount = 6, yCount = 4 } = {}) {
     g.textAlign = "center";
     g.fillText(label, clamp(p, box.left + half - 4, box.right - half + 4), box.bottom + 8);
   }
-  const up = ticksOf(y, yCount);
+  const up = yCount ? ticksOf(y, yCount) : { ticks: [] };
   g.textAlign = "right";
   for (const tick of up.ticks) {
     const p = Math.round(y(tick)) + 0.5;

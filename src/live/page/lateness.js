@@ -76,7 +76,7 @@ function drawLateHistory({ g, width, height }, { range, t }) {
   const box = { left: 44, right: width - 8, top: 6, bottom: height - 16 };
   const x = scale(range.from, range.to, box.left, box.right);
   const lines = LATE.map((_, k) => worstOver(k, range, x, box));
-  const values = lines.flat(2).filter((_, i) => i % 3 === 1);
+  const values = lines.flat(2).map(([, value]) => value);
   const least = values.reduce((a, b) => Math.min(a, b), Infinity);
   if (least === Infinity) return;
   const most = values.reduce((a, b) => Math.max(a, b), 0);

@@ -10,6 +10,7 @@ use crate::report::Times;
 use crate::scene::{Output, Plan};
 use crate::session::SessionError;
 use crate::session::granted::Granted;
+use crate::session::open::BEAT;
 use crate::session::pace::Speed;
 use crate::session::shared::Shared;
 use crate::time::SimTime;
@@ -141,7 +142,7 @@ async fn wait_for_driver(
         return Ok(true);
     }
     let (name, since) = (link.name().to_string(), Instant::now());
-    let (mut peer, mut looks, mut told) = (pin!(link.peer()), interval(LOOK), false);
+    let (mut peer, mut looks, mut told) = (pin!(link.peer()), interval(LOOK), None::<Duration>);
     loop {
         tokio::select! {
             peer = &mut peer => return Ok(peer.map(|()| true)?),
@@ -151,10 +152,13 @@ async fn wait_for_driver(
         match left {
             _ if shared.stopped() => return Ok(false),
             None => return Err(SessionError::Nobody { link: name, waited: task.wait, hint: String::new() }),
-            Some(left) if since.elapsed() >= PATIENCE && !std::mem::replace(&mut told, true) => {
-                let _ = news.send(News::Waiting(left));
+            Some(left) => {
+                let since = since.elapsed();
+                if since >= PATIENCE && told.is_none_or(|told| since >= told + BEAT) {
+                    told = Some(since);
+                    let _ = news.send(News::Waiting(left));
+                }
             }
-            Some(_) => {}
         }
     }
 }
