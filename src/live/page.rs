@@ -35,8 +35,8 @@ pub(super) static PAGE: LazyLock<String> =
 
 /// The page with these messages in it: it asks for nothing.
 pub(super) fn with(messages: &[String]) -> String {
-    // In a script, only this would end it.
-    let messages = messages.join(",\n").replace("</", "<\\/").replace("<!--", "<\\u0021--");
+    // Nothing in a script ends it, or begins another, without this.
+    let messages = messages.join(",\n").replace('<', "\\u003c");
     let inside = format!("<script type=\"application/json\" id=\"messages\">[{messages}]</script>");
     PAGE.replace("<!--messages-->", &inside)
 }

@@ -30,7 +30,7 @@ const frameOf = () => FRAMES[store.about.axes] ?? FRAMES["ned-frd"];
 function lens(width, height) {
   const [h, e] = [camera.heading, camera.elevation].map((x) => (x * Math.PI) / 180);
   const [sh, ch, se, ce] = [Math.sin(h), Math.cos(h), Math.sin(e), Math.cos(e)];
-  const size = Math.min(width / 3.3, height / 2.55);
+  const size = Math.min(width / 3.2, (height - 36) / 2.25);
   return ([east, north, up]) => {
     const depth = (sh * east + ch * north) * ce - se * up;
     const near = size / (1 + depth * 0.13);
@@ -123,30 +123,29 @@ function label(g, word, from, to) {
   const out = size > 6 ? 10 / size : 0;
   const [x, y] = [to[0] + (to[0] - from[0]) * out, to[1] + (to[1] - from[1]) * out + (size > 6 ? 0 : -10)];
   g.textAlign = "center";
-  g.strokeStyle = colour.panel;
-  g.lineWidth = 3;
-  g.strokeText(word, x, y);
   g.fillStyle = colour.fg;
-  g.fillText(word, x, y);
+  over(g, word, x, y);
 }
 
-function paintNav(g, look) {
+// The nav axes; their names come last, over the bodies.
+function paintNav(g, look, named) {
   const { world, nav } = frameOf();
   nav.forEach((word, k) => {
     const end = world([0, 1, 2].map((i) => (i === k ? 1.5 : 0)));
     const short = end[2] ? end.map((x) => x * 0.72) : end;
     g.strokeStyle = g.fillStyle = colour.dim;
     g.lineWidth = 1;
-    arrow(g, look([0, 0, 0]), look(short), []);
     g.font = "bold 12px system-ui, sans-serif";
-    label(g, word, look([0, 0, 0]), look(short));
+    const ends = [look([0, 0, 0]), look(short)];
+    if (named) label(g, word, ...ends);
+    else arrow(g, ...ends, []);
   });
 }
 
 // The ends of a body's axes in the picture.
 function axisEnds(look, rotation) {
   const { world } = frameOf();
-  return [0, 1, 2].map((k) => look(world(rotation.map((row) => 1.2 * row[k]))));
+  return [0, 1, 2].map((k) => look(world(rotation.map((row) => 1.1 * row[k]))));
 }
 
 function paintAxes(g, look, ends, { dash, names, apart }) {
@@ -169,8 +168,9 @@ function paintBodies(g, look, truth, estimate) {
   const fromAbove = camera.elevation >= 0;
   paintFaces(g, look, faces, !fromAbove);
   paintHorizon(g, look);
-  paintNav(g, look);
+  paintNav(g, look, false);
   paintFaces(g, look, faces, fromAbove);
+  paintNav(g, look, true);
   const ends = truth && axisEnds(look, truth.rotation);
   if (truth) paintAxes(g, look, ends, { dash: [], names: ["x", "y", "z"] });
   if (!estimate) return;

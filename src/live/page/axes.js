@@ -14,15 +14,20 @@ function linearTicks(low, high, count) {
   const rough = (high - low) / Math.max(1, count);
   if (!(rough > 0) || !Number.isFinite(rough)) return { ticks: [], step: 0 };
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 5, 10].find((x) => x * power >= rough * 0.999) ?? 10);
+  const step = power * ([1, 2, 5, 10].find((x) => x * power >= rough * 0.7) ?? 10);
   const ticks = [];
   for (let k = Math.ceil(low / step - 1e-9); ticks.length < 50 && k * step <= high + step * 1e-9; k++) ticks.push(k * step);
-  return { ticks, step };
+  // One tick alone says nothing about the scale.
+  return ticks.length < 2 && count < 8 ? linearTicks(low, high, 2 * Math.max(1, count)) : { ticks, step };
 }
 
-/** Powers of ten between two, every so many decades that there are at most `count`. */
+/** Powers of ten between two, every so many decades that there are at most `count`; 2 and 5 too where these are few. */
 function logTicks(low, high, count) {
   const [from, to] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
+  if (to - from < 2) {
+    const all = [from - 1, from, from + 1].flatMap((k) => [1, 2, 5].map((x) => x * 10 ** k));
+    return { ticks: all.filter((x) => x >= low && x <= high).slice(0, Math.max(2, count)), step: 0 };
+  }
   const every = Math.max(1, Math.ceil((to - from + 1) / Math.max(1, count)));
   const ticks = [];
   for (let k = from; k <= to; k += every) ticks.push(10 ** k);
@@ -32,39 +37,62 @@ function logTicks(low, high, count) {
 const ticksOf = (axis, count) => (axis.log ? logTicks : linearTicks)(axis.low, axis.high, count);
 
 function decadeText(x) {
-  const power = Math.round(Math.log10(x));
+  const power = Math.floor(Math.log10(x) + 1e-9);
+  const lead = Math.round(x / 10 ** power);
+  if (lead > 1) return power >= -3 && power <= 4 ? fixed(x, Math.max(0, -power)) : exponential(x, 1);
   if (power >= -3 && power <= 4) return String(+`1e${power}`);
   return "10" + Array.from(String(power), (c) => ({ "-": "⁻" })[c] ?? "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]).join("");
 }
 
+/** Words that can be read over anything. */
+function over(g, words, x, y) {
+  g.strokeStyle = colour.panel;
+  g.lineWidth = 3;
+  g.strokeText(words, x, y);
+  g.fillText(words, x, y);
+}
+
 /** Grid lines and labels; `box` is {left, right, top, bottom} of the plot itself. */
-function frame(g, box, x, y, { xLabels = true, xCount = 6, yCount = 4 } = {}) {
+function frame(g, box, x, y, { xLabels = true, xUnit = "", xCount = 6, yCount = 4 } = {}) {
   g.strokeStyle = colour.line;
   g.fillStyle = colour.dim;
   g.lineWidth = 1;
   g.setLineDash([]);
   g.beginPath();
   const across = ticksOf(x, xCount);
-  for (const tick of across.ticks) {
+  let free = Infinity;
+  g.textAlign = "center";
+  // From the last, which has the unit; one without room is left out.
+  for (const [i, tick] of across.ticks.reverse().entries()) {
     const p = Math.round(x(tick)) + 0.5;
     g.moveTo(p, box.top);
     g.lineTo(p, box.bottom);
-    if (!xLabels) continue;
-    const label = x.log ? decadeText(tick) : tickText(tick, across.step);
-    const half = g.measureText(label).width / 2;
-    g.textAlign = "center";
-    g.fillText(label, clamp(p, box.left + half - 4, box.right - half + 4), box.bottom + 8);
+    const words = (x.log ? decadeText(tick) : tickText(tick, across.step)) + (i ? "" : xUnit);
+    const half = g.measureText(words).width / 2;
+    const middle = clamp(p, box.left + half - 4, box.right - half + 4);
+    if (!xLabels || middle + half > free) continue;
+    g.fillText(words, middle, box.bottom + 8);
+    free = middle - half - 4;
   }
-  const up = yCount ? ticksOf(y, yCount) : { ticks: [] };
-  g.textAlign = "right";
+  const up = yCount ? ticksOf(y, yCount) : { ticks: [], step: 0 };
+  const labels = [];
   for (const tick of up.ticks) {
     const p = Math.round(y(tick)) + 0.5;
     g.moveTo(box.left, p);
     g.lineTo(box.right, p);
-    const label = y.log ? decadeText(tick) : tickText(tick, up.step);
-    g.fillText(label, box.left - 4, clamp(p, box.top + 4, box.bottom - 4));
+    labels.push([y.log ? decadeText(tick) : tickText(tick, up.step), clamp(p, box.top + 5, box.bottom - 5)]);
   }
   g.stroke();
+  if (yCount) labelsUp(g, box, labels);
+}
+
+// Labels beside the plot, or in it where they are too wide.
+function labelsUp(g, box, labels) {
+  for (const [words, p] of labels) {
+    const inside = g.measureText(words).width > box.left - 4;
+    g.textAlign = inside ? "left" : "right";
+    over(g, words, inside ? box.left + 2 : box.left - 4, p);
+  }
 }
 
 function clipped(g, box, paint) {
@@ -80,7 +108,7 @@ function clipped(g, box, paint) {
 function cursor(g, box, p) {
   if (!(p >= box.left - 1 && p <= box.right + 1)) return;
   g.setLineDash([]);
-  g.strokeStyle = colour.estimate;
+  g.strokeStyle = colour.cursor;
   g.lineWidth = 1.5;
   g.beginPath();
   g.moveTo(p, box.top);

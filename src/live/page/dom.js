@@ -36,23 +36,24 @@ function setOptions(select, names) {
 
 // Colours by Okabe and Ito, which all can tell apart; the style has them for light and for dark.
 const colour = {};
-const axisDashes = [[], [6, 3], [2, 2]];
+const axisDashes = [[9, 4], [4, 3], [1.5, 2.5]];
 
 function readColours() {
   const style = getComputedStyle(document.documentElement);
-  for (const name of ["panel", "fg", "dim", "line", "x", "y", "z", "truth", "estimate", "bar"]) {
+  for (const name of ["panel", "fg", "dim", "line", "x", "y", "z", "truth", "estimate", "bar", "cursor"]) {
     colour[name] = style.getPropertyValue(`--${name}`).trim();
   }
   colour.axes = [colour.x, colour.y, colour.z];
   colour.many = ["a", "b", "c", "d", "e", "f", "g"].map((name) => style.getPropertyValue(`--many-${name}`).trim());
 }
 
-/** A canvas ready to draw on in CSS pixels, or null where it cannot be seen. */
+/** A canvas ready to draw on in CSS pixels, or null where it has no size, or is out of sight while all moves. */
 function surface(canvas) {
   const place = canvas.getBoundingClientRect();
   const width = Math.round(place.width);
   const height = Math.round(place.height);
-  if (!width || !height || place.bottom < -50 || place.top > innerHeight + 50) return null;
+  const away = place.bottom < -50 || place.top > innerHeight + 50;
+  if (!width || !height || (away && isMoving())) return null;
   const ratio = devicePixelRatio || 1;
   const size = [Math.round(width * ratio), Math.round(height * ratio)];
   if (canvas.width !== size[0]) canvas.width = size[0];

@@ -29,7 +29,7 @@ function drawErrors({ g, width, height }, errors, shown) {
   const { low, high } = padded(Math.min(0, ...found.map(({ least }) => least)), Math.max(0, ...found.map(({ most }) => most)));
   const x = scale(range.from, range.to, box.left, box.right);
   const y = scale(low, high, box.bottom, box.top);
-  frame(g, box, x, y, { xCount: width / 70, yCount: height / 30 });
+  frame(g, box, x, y, { xUnit: " s", xCount: width / 70, yCount: height / 30 });
   if (errors) {
     const dashes = [[], [5, 3]];
     clipped(g, box, () => ERRORS.forEach((_, k) => {

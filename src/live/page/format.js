@@ -49,15 +49,15 @@ function bytesText(n) {
 function microsecondsText(x) {
   if (!isNumber(x)) return "–";
   const size = Math.abs(x);
-  if (size >= 1e6) return `${significant(x / 1e6)} s`;
-  return size >= 1e4 ? `${significant(x / 1e3)} ms` : `${significant(x)} µs`;
+  if (size >= 1e6) return `${significant(x / 1e6, 3)} s`;
+  return size >= 1e4 ? `${significant(x / 1e3, 3)} ms` : `${significant(x, 3)} µs`;
 }
 
 /** A tick's label: plain where it is short. */
 function tickText(x, step) {
   if (x === 0) return "0";
   const size = Math.abs(x);
-  if (size >= 1e5 || size < 1e-3) {
+  if (size >= 1e6 || size < 1e-3) {
     const digits = step > 0 ? clamp(Math.floor(Math.log10(size)) - Math.floor(Math.log10(step)) + 1, 1, 6) : 1;
     return exponential(x, digits);
   }

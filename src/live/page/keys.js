@@ -14,8 +14,8 @@ const ACTIONS = {
 document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.altKey || event.metaKey || byId("help").open) return;
   const target = event.target;
-  if (target.matches?.("select, input")) return;
-  if (event.key === " " && target.matches?.("button")) return;
+  if (target.matches?.("select") || (event.key === " " && target.matches?.("button, [type=checkbox]"))) return;
+  if (event.key.startsWith("Arrow") && target.matches?.("[type=range]")) return;
   const digit = /^[1-9]$/.test(event.key) ? () => toggleSensor(Number(event.key) - 1) : null;
   const action = digit ?? (Object.hasOwn(ACTIONS, event.key) ? ACTIONS[event.key] : null);
   if (!action) return;
@@ -24,9 +24,15 @@ document.addEventListener("keydown", (event) => {
   changed();
 });
 
+/** After a click with a pointer the space bar is the view's again. */
+function letGo(event) {
+  if (event.detail) event.currentTarget.blur();
+}
+
 function onClick(id, action) {
-  byId(id).addEventListener("click", () => {
+  byId(id).addEventListener("click", (event) => {
     action();
+    letGo(event);
     changed();
   });
 }

@@ -12,12 +12,9 @@ panel("lateness", {
     byId("late-numbers").replaceChildren(...LATE.map(number));
   },
   draw(shown) {
-    const worst = LATE.map((_, k) => lateSensors().map(({ lateness }) => lateness.value(k, shown.t)).filter(isNumber).reduce((a, b) => Math.max(a, b), NaN_LEAST));
-    LATE.forEach((name, k) => {
-      const x = worst[k] === NaN_LEAST ? NaN : worst[k];
-      setNumber(byId("late-numbers").querySelector(`[data-late=${name}]`), microsecondsText(x), x);
-    });
-    const words = LATE.map((name, k) => `${name} ${worst[k] === NaN_LEAST ? "unknown" : microsecondsText(worst[k])}`).join(", ");
+    const worst = LATE.map((_, k) => worstAt(k, shown.t));
+    LATE.forEach((name, k) => setNumber(byId("late-numbers").querySelector(`[data-late=${name}]`), microsecondsText(worst[k]), worst[k]));
+    const words = LATE.map((name, k) => `${name} ${microsecondsText(worst[k])}`).join(", ");
     const histogram = byId("late-histogram");
     const counts = histogramCounts();
     setHidden(histogram, !counts);
@@ -32,7 +29,10 @@ panel("lateness", {
   },
 });
 
-const NaN_LEAST = -Infinity;
+function worstAt(k, t) {
+  const values = lateSensors().map(({ lateness }) => lateness.value(k, t)).filter(isNumber);
+  return values.length ? Math.max(...values) : NaN;
+}
 
 function histogramCounts() {
   if (!store.histogram) return null;
@@ -65,11 +65,8 @@ function drawHistogram({ g, width, height }, { edges, total, first, last }) {
 
 function note(g, box, words) {
   g.textAlign = "right";
-  g.strokeStyle = colour.panel;
-  g.lineWidth = 3;
-  g.strokeText(words, box.right - 2, box.top + 6);
   g.fillStyle = colour.dim;
-  g.fillText(words, box.right - 2, box.top + 6);
+  over(g, words, box.right - 2, box.top + 6);
 }
 
 function drawLateHistory({ g, width, height }, { range, t }) {
@@ -81,7 +78,7 @@ function drawLateHistory({ g, width, height }, { range, t }) {
   if (least === Infinity) return;
   const most = values.reduce((a, b) => Math.max(a, b), 0);
   const y = scale(10 ** Math.floor(Math.log10(least)), 10 ** Math.ceil(Math.log10(most * 1.01)), box.bottom, box.top, true);
-  frame(g, box, x, y, { xCount: width / 70, yCount: height / 24 });
+  frame(g, box, x, y, { xUnit: " s", xCount: width / 70, yCount: height / 24 });
   clipped(g, box, () => lines.forEach((found, k) => band(g, found, y, { stroke: colour.many[k], width: 1.5, dash: LATE_DASHES[k] })));
   note(g, box, "µs over time");
   cursor(g, box, x(t));

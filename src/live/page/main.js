@@ -106,7 +106,7 @@ addEventListener("resize", () => {
   measureRoom();
   changed(true);
 });
-addEventListener("scroll", () => changed(true), { passive: true });
+addEventListener("scroll", () => isMoving() && changed(), { passive: true });
 document.addEventListener("visibilitychange", () => document.hidden || changed(true));
 
 window.ratetable = { store, shown };

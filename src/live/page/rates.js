@@ -11,7 +11,7 @@ panel("rates", {
       const name = sensor.name || `sensor ${i + 1}`;
       const cell = (field) => make("td", { "data-sensor": name, "data-field": field });
       const row = { sensor, asked: cell("asked_hz"), rate: cell("rate_hz"), lost: cell("lost"), canvas: make("canvas", { role: "img", class: "spark" }) };
-      setNumber(row.asked, isNumber(sensor.rate_hz) ? `${significant(sensor.rate_hz, 5)} Hz` : "–", sensor.rate_hz);
+      setNumber(row.asked, isNumber(sensor.rate_hz) ? `${Number(sensor.rate_hz.toPrecision(6))} Hz` : "–", sensor.rate_hz);
       row.element = make("tr", {}, make("th", { scope: "row", text: name }), row.asked, row.rate, row.lost, make("td", {}, row.canvas));
       rateRows.push(row);
     });

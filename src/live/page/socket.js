@@ -5,8 +5,6 @@ const AGAIN_MS = 2000;
 function startReport(element) {
   view.report = true;
   list(JSON.parse(element.textContent)).forEach(receive);
-  // A report that a break-off left without an end still is one.
-  if (!store.end) view.report = true;
   changed(true);
 }
 

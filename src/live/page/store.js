@@ -29,8 +29,12 @@ function begin(told) {
   store.begun = begun;
   store.about = told;
   store.sensors = list(told.sensors).map(newSensor);
-  list(told.estimators).forEach((name, i) => (estimator(i).name = text(name)));
-  list(told.links).forEach((name, i) => (link(i).name = text(name)));
+  for (const [names, find] of [[told.estimators, estimator], [told.links, link]]) {
+    list(names).slice(0, 100).forEach((name, i) => {
+      const found = find(i);
+      found.name = text(name) || found.name;
+    });
+  }
   store.timeline = list(told.timeline).map(record).filter((span) => isNumber(span.start_s));
 }
 

@@ -22,17 +22,19 @@ function goToByPointer(canvas, x) {
   if (known) return;
   const go = (event) => {
     if (event.type === "pointermove" && !event.buttons) return;
+    // A finger that goes down may be about to scroll: only its tap counts.
+    if (event.pointerType === "touch" && event.type !== "click") return;
     goTo(timeScales.get(canvas).back(event.clientX - canvas.getBoundingClientRect().left));
     changed();
   };
-  canvas.addEventListener("pointerdown", go);
-  canvas.addEventListener("pointermove", go);
+  for (const kind of ["pointerdown", "pointermove", "click"]) canvas.addEventListener(kind, go);
 }
 
 panel("strips", {
   present: () => store.sensors.some(({ readings }) => readings.length),
   build() {
     setText(byId("thinned"), text(store.about.thinned));
+    byId("thinned").title = text(store.about.thinned);
     rows.length = 0;
     store.sensors.forEach((sensor, i) => rows.push(newRow(sensor, i)));
     byId("strip-list").replaceChildren(...rows.map(({ element }) => element));
@@ -54,7 +56,10 @@ panel("strips", {
 function newRow(sensor, i) {
   const name = sensor.name || `sensor ${i + 1}`;
   const key = i < 9 ? make("kbd", { text: String(i + 1) }) : "";
-  const click = () => toggleSensor(i);
+  const click = (event) => {
+    toggleSensor(i);
+    letGo(event);
+  };
   const button = make("button", { type: "button", class: "toggle", "data-toggle": name, title: "Show or hide", click }, key, make("span", { text: name }));
   const plots = make("div", { class: "plots" });
   return { sensor, button, plots, strips: [], columns: null, element: make("div", { class: "strip", "data-strip": name }, button, plots) };
@@ -67,12 +72,12 @@ function fillRow(row) {
     const cells = group.columns.map((k, i) => {
       const { name } = row.columns[k];
       const value = make("b", { "data-sensor": row.sensor.name, "data-column": name });
-      legend.append(make("span", {}, make("i", { class: `swatch axis-${i % 3}` }), `${name} `, value));
+      legend.append(make("span", {}, make("i", { class: `swatch axis-${i % 3}` }), make("span", { text: `${name} ` }), value));
       return value;
     });
     if (group.unit) legend.append(make("span", { class: "dim", text: group.unit }));
     const canvas = make("canvas", { role: "img" });
-    return { ...group, cells, canvas, element: make("div", { class: "plot" }, legend, canvas), y: null };
+    return { ...group, cells, canvas, element: make("div", { class: group.columns.length > 1 ? "plot wide" : "plot" }, legend, canvas), y: null };
   });
   row.plots.classList.toggle("several", row.strips.length > 1);
   row.plots.replaceChildren(...row.strips.map(({ element }) => element));
@@ -91,7 +96,7 @@ function drawStrip({ sensor }, strip, shown, last) {
   const n = columns.length;
   const found = strip.columns.flatMap((k) => [extent(readings, k, n + k, shown.range), extent(readings, 2 * n + k, 3 * n + k, shown.range)]).filter(Boolean);
   const bounds = found.length ? padded(Math.min(...found.map(({ least }) => least)), Math.max(...found.map(({ most }) => most))) : { low: -1, high: 1 };
-  const decimals = decimalsOf(bounds.high - bounds.low);
+  const decimals = Math.max(0, decimalsOf(bounds.high - bounds.low) - (strip.alone ? 1 : 0));
   const point = readings.at(shown.t);
   const now = strip.columns.map((k) => (point < 0 ? NaN : (readings.columns[k][point] + readings.columns[n + k][point]) / 2));
   strip.cells.forEach((cell, i) => setNumber(cell, fixed(now[i], decimals), now[i]));
@@ -107,18 +112,22 @@ function paintStrip({ g, width, height }, { readings, columns }, strip, { shown,
   const box = { left: small ? 4 : 48, right: width - 14, top: 3, bottom: height - (last ? 16 : 3) };
   const x = scale(shown.range.from, shown.range.to, box.left, box.right);
   const y = scale(bounds.low, bounds.high, box.bottom, box.top);
-  frame(g, box, x, y, { xLabels: last, xCount: width / 70, yCount: small ? 0 : (box.bottom - box.top) / 26 });
-  if (small) limits(g, box, y);
+  frame(g, box, x, y, { xLabels: last, xUnit: " s", xCount: width / 70, yCount: small ? 0 : (box.bottom - box.top) / 24 });
   clipped(g, box, () => {
     strip.columns.forEach((k, i) => {
       const stroke = colour.axes[i % 3];
-      band(g, pieces(readings, k, n + k, shown.range, x), y, { stroke, fill: stroke });
+      band(g, pieces(readings, k, n + k, shown.range, x), y, { stroke, fill: stroke, width: 2.5 });
     });
     strip.columns.forEach((k, i) => {
       const truth = pieces(readings, 2 * n + k, 3 * n + k, shown.range, x);
+      // Where it goes up and down within every pixel it would hide what is read.
+      const points = truth.flat();
+      g.globalAlpha = points.reduce((sum, [, a, b]) => sum + y(a) - y(b), 0) > 4 * points.length ? 0.3 : 1;
       band(g, truth, y, { stroke: colour.fg, width: 1, dash: axisDashes[i % 3] });
+      g.globalAlpha = 1;
     });
   });
+  if (small) limits(g, box, y);
   names(g, box, y, strip, readings, columns, shown);
   cursor(g, box, x(shown.t));
   goToByPointer(g.canvas, x);
@@ -130,11 +139,8 @@ function limits(g, box, y) {
   g.textAlign = "left";
   for (const tick of ticks.length > 1 ? [ticks[0], ticks[ticks.length - 1]] : ticks) {
     const middle = clamp(y(tick), box.top + 6, box.bottom - 6);
-    g.strokeStyle = colour.panel;
-    g.lineWidth = 3;
-    g.strokeText(tickText(tick, step), box.left + 2, middle);
     g.fillStyle = colour.dim;
-    g.fillText(tickText(tick, step), box.left + 2, middle);
+    over(g, tickText(tick, step), box.left + 2, middle);
   }
 }
 

@@ -44,20 +44,23 @@ function drawTimeline({ g, width, height }, shown) {
   const ends = spans.flatMap(({ start, end }) => [start, end]).filter(isNumber);
   const most = Math.max(store.about.duration_s ?? 0, isNumber(store.t) ? store.t : 0, isNumber(store.about.duration_s) ? 0 : Math.max(0, ...ends));
   const x = scale(Math.min(0, isNumber(store.t0) ? store.t0 : 0), most || 1, box.left, box.right);
-  frame(g, box, x, scale(0, 1, box.bottom, box.top), { xCount: width / 90, yCount: 0 });
+  frame(g, box, x, scale(0, 1, box.bottom, box.top), { xUnit: " s", xCount: width / 90, yCount: 0 });
   boxes = [];
   lanes.forEach((lane, i) => {
     const top = box.top + i * ROW_HEIGHT;
     g.fillStyle = colour.dim;
     g.textAlign = "left";
     g.fillText(lane.name, 2, top + ROW_HEIGHT / 2);
-    for (const span of lane.spans) drawSpan(g, box, top, { ...span, row: lane.row, x });
+    lane.spans.forEach((span, k) => {
+      const next = lane.spans[k + 1];
+      drawSpan(g, box, top, { ...span, row: lane.row, x, until: next ? x(next.start) : box.right });
+    });
   });
   cursor(g, box, x(shown.t));
   goToByPointer(g.canvas, x);
 }
 
-function drawSpan(g, box, top, { label: word, start, end, row, x }) {
+function drawSpan(g, box, top, { label: word, start, end, row, x, until }) {
   const open = !isNumber(end);
   const [from, to] = [Math.max(box.left, x(start)), open ? box.right : Math.min(box.right, x(end))];
   const wide = Math.max(2, to - from - 1);
@@ -67,10 +70,10 @@ function drawSpan(g, box, top, { label: word, start, end, row, x }) {
   g.globalAlpha = 1;
   g.fillRect(from, top + 1, 2, ROW_HEIGHT - 2);
   const words = open ? `${word} →` : word;
-  if (wide > 14) {
+  if (until - from > 14) {
     g.fillStyle = colour.fg;
     g.textAlign = "left";
-    clipped(g, { left: from, right: from + wide, top, bottom: top + ROW_HEIGHT }, () => g.fillText(words, from + 5, top + ROW_HEIGHT / 2 + 0.5));
+    clipped(g, { left: from, right: until, top, bottom: top + ROW_HEIGHT }, () => g.fillText(words, from + 5, top + ROW_HEIGHT / 2 + 0.5));
   }
   boxes.push({ from, to: from + wide, top, title: `${row}: ${word}, ${secondsText(start)} to ${open ? "the end" : secondsText(end)}` });
 }

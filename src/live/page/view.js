@@ -9,6 +9,7 @@ const view = {
 
 /** Whether more is to come. */
 const isLive = () => !view.report && !store.end;
+const isMoving = () => (isLive() ? !view.held : view.playing);
 const shownTime = () => (view.held ? view.t : store.t);
 
 function startView() {
