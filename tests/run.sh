@@ -13,7 +13,7 @@ requirements=$root/firmware-host-tests/tests/requirements.txt
 installed=$venv/requirements.installed
 
 # A requirement may have changed, or the Python that the environment was made of may be gone.
-if ! cmp -s "$requirements" "$installed" || ! "$python" -c 'import pymavlink.mavutil, serial, scipy, pyarrow, mcap_ros2, evo, allantools, ray, pyulog, ahrs' 2>/dev/null; then
+if ! cmp -s "$requirements" "$installed" || ! "$python" -c 'import pymavlink.mavutil, serial, scipy, pyarrow, mcap_ros2, evo, allantools, ray, pyulog, ahrs, websockets' 2>/dev/null; then
     if ! command -v python3 >/dev/null; then
         echo "tests/run.sh: python3 is missing: install it (Debian and Ubuntu: apt install python3 python3-venv)" >&2
         exit 2

@@ -91,7 +91,7 @@ impl Hub {
                 Kind::Page(told) => told.set(false),
                 Kind::Foxglove(subscriber) => {
                     viewer.put(Message::text(before.clone()));
-                    *subscriber.borrow_mut() = Subscriber::new();
+                    subscriber.borrow_mut().forget();
                     viewer.put(Message::text(channels.advertise()));
                 }
             }
@@ -129,8 +129,8 @@ impl Hub {
         }
     }
 
-    /// Tells viewers of another make what they have subscribed to.
-    pub(super) fn tell_subscribers(&self, batch: &Batch, status: Option<(SimTime, &[Status])>) {
+    /// Tells viewers of another make what they have subscribed to, up to `now`, and how things are then.
+    pub(super) fn tell_subscribers(&self, now: Option<SimTime>, batch: &Batch, status: Option<&[Status]>) {
         let viewers = self.viewers.borrow();
         let subscribers: Vec<_> = viewers
             .iter()
@@ -145,15 +145,19 @@ impl Hub {
         let wanted = |channel: u32| subscribers.iter().any(|(_, it)| it.borrow().wants(channel));
         let mut out = |channel: u32, t: SimTime, payload: &[u8]| {
             for (viewer, subscriber) in &subscribers {
-                subscriber
-                    .borrow()
-                    .frames(channel, t, payload, &mut |frame| viewer.put(Message::binary(frame)));
+                let mut subscriber = subscriber.borrow_mut();
+                if subscriber.wants(channel) {
+                    // What a firmware says of the future is sent as it is, and does not move the time.
+                    let time = now.and_then(|now| subscriber.time(t.min(now)));
+                    time.into_iter().for_each(|frame| viewer.put(Message::binary(frame)));
+                    subscriber.frames(channel, t, payload, &mut |frame| viewer.put(Message::binary(frame)));
+                }
             }
         };
         let channels = self.channels.borrow();
         channels.messages(batch, &wanted, &mut out);
-        if let Some((t, status)) = status {
-            channels.diagnostics(t, status, &wanted, &mut out);
+        if let Some((now, status)) = now.zip(status) {
+            channels.diagnostics(now, status, &wanted, &mut out);
         }
     }
 

@@ -146,8 +146,8 @@ impl Show<'_> {
         hub.tell_pages(&mut self.story);
         self.ticks += 1;
         let asks = wanted && self.ticks.is_multiple_of(STATUS);
-        let status = self.story.t.filter(|_| asks).map(|t| (t, status::of(&self.story)));
-        hub.tell_subscribers(&batch, status.as_ref().map(|(t, status)| (*t, status.as_slice())));
+        let status = asks.then(|| status::of(&self.story));
+        hub.tell_subscribers(self.story.t, &batch, status.as_deref());
     }
 
     /// Plays the scene up to now, for at most so long; into a batch what is not older than a second.

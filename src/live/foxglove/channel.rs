@@ -75,11 +75,11 @@ impl Channels {
         }
     }
 
-    /// The message that greets a viewer; `session` tells this run from others.
+    /// The message that greets a viewer; `session` tells this run from others. Its time is told: viewers that go by the
+    /// time of arrival otherwise would draw every sample where its batch came.
     pub(in crate::live) fn server_info(&self, session: &str) -> String {
         let name = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
-        json!({ "op": "serverInfo", "name": name, "capabilities": [], "supportedEncodings": [],
-                "metadata": {}, "sessionId": session })
+        json!({ "op": "serverInfo", "name": name, "capabilities": ["time"], "sessionId": session })
         .to_string()
     }
 
@@ -105,12 +105,21 @@ impl Channels {
         self.channels.iter().any(|channel| channel.id == id)
     }
 
-    /// The messages of a batch on the channels that somebody wants, in order of time on each.
+    /// The messages of a batch on the channels that somebody wants, in order of time over all of them: a viewer's time
+    /// follows them, and does not go back.
     pub(in crate::live) fn messages(&self, batch: &Batch, wanted: &dyn Fn(u32) -> bool, out: Out<'_>) {
-        let mut bytes = Vec::with_capacity(512);
+        let (mut bytes, mut all, mut made) = (Vec::with_capacity(512), Vec::new(), Vec::new());
         for channel in self.channels.iter().filter(|channel| wanted(channel.id)) {
-            let mut put = |t: SimTime, bytes: &[u8]| out(channel.id, t, bytes);
+            let mut put = |t: SimTime, bytes: &[u8]| {
+                let start = all.len();
+                all.extend_from_slice(bytes);
+                made.push((t, channel.id, start..all.len()));
+            };
             self.encode(channel.what, batch, &mut bytes, &mut put);
+        }
+        made.sort_by_key(|(t, ..)| *t);
+        for (t, id, place) in made {
+            out(id, t, &all[place]);
         }
     }
 
@@ -308,6 +317,8 @@ fn offered(about: &About) -> Vec<(String, Kind, What)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Attitude;
+    use crate::live::batch::Told;
     use crate::live::thread::gathered;
     use crate::scene::Plan;
     use std::collections::BTreeMap;
@@ -362,9 +373,25 @@ mod tests {
         assert_eq!(first["topic"], "/imu/data_raw");
         assert_eq!((&first["encoding"], &first["schemaEncoding"]), (&json!("cdr"), &json!("ros2msg")));
         assert_eq!(first["schemaName"], "sensor_msgs/msg/Imu");
-        for messages in all.values() {
-            assert!(messages.is_sorted_by_key(|(t, _)| *t));
-        }
+        let info: serde_json::Value = serde_json::from_str(&channels.server_info("x")).unwrap();
+        assert_eq!((&info["op"], &info["sessionId"]), (&json!("serverInfo"), &json!("x")));
+        assert_eq!(info["capabilities"], json!(["time"]));
+    }
+
+    #[test]
+    fn messages_come_in_order_of_time_whatever_their_channel() {
+        let plan = Plan::load("table-1", &["duration=100 ms".into()]).unwrap();
+        let about = About::scene("run", &plan, plan.duration, vec!["mpu@pty".into()]);
+        let channels = Channels::new(&about, None);
+        let mut batch = gathered(&plan);
+        // The answer of a firmware comes later than what it was about.
+        let late = Told { of: 0, t: SimTime(25_000_000), attitude: Attitude::IDENTITY };
+        batch.estimates.push(late);
+        let mut all = Vec::new();
+        channels.messages(&batch, &|_| true, &mut |id, t, _| all.push((t, id)));
+        assert!(all.is_sorted(), "then in that of the channels");
+        let estimate = channels.channels.iter().find(|it| it.topic == "/estimate/pose").unwrap();
+        assert!(all.contains(&(late.t, estimate.id)));
     }
 
     #[test]

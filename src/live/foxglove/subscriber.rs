@@ -8,6 +8,8 @@ use serde_json::{Value, json};
 const MOST: usize = 1000;
 /// The first byte of a message with data.
 const MESSAGE_DATA: u8 = 1;
+/// The first byte of a message that tells the time.
+const TIME: u8 = 2;
 /// A status that is a warning.
 const WARNING: u8 = 1;
 
@@ -16,6 +18,8 @@ const WARNING: u8 = 1;
 pub(in crate::live) struct Subscriber {
     /// Its number for each, and the channel's.
     wants: Vec<(u32, u32)>,
+    /// The time that it was told last.
+    told: Option<SimTime>,
 }
 
 impl Subscriber {
@@ -78,6 +82,20 @@ impl Subscriber {
         self.wants.iter().any(|(_, wanted)| *wanted == channel)
     }
 
+    /// Forgets what it wants: the channels are gone. Its time goes on.
+    pub(in crate::live) fn forget(&mut self) {
+        self.wants.clear();
+    }
+
+    /// The frame that tells it the time; `None` where it knows a time as late, for a time that goes back begins anew.
+    pub(in crate::live) fn time(&mut self, t: SimTime) -> Option<Vec<u8>> {
+        if self.told >= Some(t) {
+            return None;
+        }
+        self.told = Some(t);
+        Some([&[TIME][..], &nanos(t)].concat())
+    }
+
     /// A message's frames, one for each time that it wants the channel.
     pub(in crate::live) fn frames(
         &self,
@@ -90,11 +108,16 @@ impl Subscriber {
             let mut frame = Vec::with_capacity(13 + payload.len());
             frame.push(MESSAGE_DATA);
             frame.extend_from_slice(&id.to_le_bytes());
-            frame.extend_from_slice(&t.0.max(0).unsigned_abs().to_le_bytes());
+            frame.extend_from_slice(&nanos(t));
             frame.extend_from_slice(payload);
             out(frame);
         }
     }
+}
+
+/// A time as frames have it: nanoseconds since the scene began, little-endian; none is before that.
+fn nanos(t: SimTime) -> [u8; 8] {
+    t.0.max(0).unsigned_abs().to_le_bytes()
 }
 
 fn list<'v>(message: &'v Value, key: &str) -> &'v [Value] {
@@ -132,6 +155,16 @@ mod tests {
         assert_eq!(frames, [b"\x01\x02\x01\x00\x00\x04\x03\x02\x01\x00\x00\x00\x00\x00\x01".to_vec()]);
         subscriber.hear(&channels(), r#"{"op":"unsubscribe","subscriptionIds":[258]}"#);
         assert!(!subscriber.wants(1));
+    }
+
+    #[test]
+    fn a_viewer_is_told_a_time_once_and_never_an_earlier_one() {
+        let mut subscriber = Subscriber::new();
+        assert_eq!(subscriber.time(SimTime(0)), Some(vec![2, 0, 0, 0, 0, 0, 0, 0, 0]));
+        assert_eq!(subscriber.time(SimTime(0)), None);
+        assert_eq!(subscriber.time(SimTime(0x0102_0304)), Some(vec![2, 4, 3, 2, 1, 0, 0, 0, 0]));
+        subscriber.forget();
+        assert_eq!(subscriber.time(SimTime(0x0102_0303)), None);
     }
 
     #[test]
