@@ -109,9 +109,9 @@ fn there_is(program: &str) -> bool {
 #[test]
 fn bash_can_load_its_completions_and_every_command_is_in_them() {
     let script = ratetable(&["completions", "bash"]);
-    let checked = Command::new("bash").arg("-n").write_stdin(script.out.clone()).output().unwrap();
+    let checked = Asserted::new("bash").arg("-n").write_stdin(script.out.clone()).output().unwrap();
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
-    let broken = Command::new("bash").arg("-n").write_stdin("case x in\n").output().unwrap();
+    let broken = Asserted::new("bash").arg("-n").write_stdin("case x in\n").output().unwrap();
     assert!(!broken.status.success(), "bash -n notices a script that is none");
     let asks = "COMP_WORDS=(ratetable ge); COMP_CWORD=1; _ratetable ratetable ge ratetable; echo \"${COMPREPLY[@]}\"";
     let loaded = Command::new("bash").arg("-c").arg(format!("{}\n{asks}", script.out)).output().unwrap();

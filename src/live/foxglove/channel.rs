@@ -80,7 +80,7 @@ impl Channels {
     pub(in crate::live) fn server_info(&self, session: &str) -> String {
         let name = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
         json!({ "op": "serverInfo", "name": name, "capabilities": ["time"], "sessionId": session })
-        .to_string()
+            .to_string()
     }
 
     /// The message that offers the channels.
@@ -323,8 +323,11 @@ mod tests {
     use crate::scene::Plan;
     use std::collections::BTreeMap;
 
-    /// A second of a scene: each topic's messages.
-    fn played(scene: &str, sets: &[&str]) -> (Channels, BTreeMap<String, Vec<(SimTime, Vec<u8>)>>) {
+    /// Each topic's messages.
+    type Messages = BTreeMap<String, Vec<(SimTime, Vec<u8>)>>;
+
+    /// A second of a scene.
+    fn played(scene: &str, sets: &[&str]) -> (Channels, Messages) {
         let sets: Vec<_> = ["duration=1 s"].iter().chain(sets).map(ToString::to_string).collect();
         let plan = Plan::load(scene, &sets).unwrap();
         let about = About::scene("run", &plan, plan.duration, vec!["mpu@pty".into()]);
