@@ -28,7 +28,9 @@ Examples:
   # to a board on a serial port
   ratetable run mpu-9250 --to mpu@/dev/ttyUSB0,921600
   # to PX4, QGroundControl beside it
-  ratetable run --to px4@/dev/ttyACM0 --qgc";
+  ratetable run --to px4@/dev/ttyACM0 --qgc
+  # on a page in a browser
+  ratetable run --live";
 
 /// `timing`.
 pub const TIMING: &str = "\
