@@ -267,13 +267,26 @@ pub fn pose(stamped: Stamped, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
     Cdr::begin(stamped, bytes).doubles(&[0.0, 0.0, 0.0, x, y, z, w]);
 }
 
-/// `tf2_msgs/msg/TFMessage` of a frame `child` that lies in the stamped one's axes turned by `[w, x, y, z]`.
-pub fn transform(stamped: Stamped, child: &str, [w, x, y, z]: [f64; 4], bytes: &mut Vec<u8>) {
+/// A frame `child` that lies at the origin of another one, turned in its axes by a quaternion `[w, x, y, z]`.
+#[derive(Clone, Copy, Debug)]
+pub struct Turned<'a> {
+    /// When, and in which frame.
+    pub stamped: Stamped,
+    /// The frame's name.
+    pub child: &'a str,
+    /// Takes vectors of the frame to the other one's axes.
+    pub attitude: [f64; 4],
+}
+
+/// `tf2_msgs/msg/TFMessage`.
+pub fn transforms(all: &[Turned<'_>], bytes: &mut Vec<u8>) {
     let mut cdr = Cdr::empty(bytes);
-    cdr.word(1);
-    cdr.header(stamped);
-    cdr.text(child);
-    cdr.doubles(&[0.0, 0.0, 0.0, x, y, z, w]);
+    cdr.word(all.len() as u32);
+    for Turned { stamped, child, attitude: [w, x, y, z] } in all {
+        cdr.header(*stamped);
+        cdr.text(child);
+        cdr.doubles(&[0.0, 0.0, 0.0, *x, *y, *z, *w]);
+    }
 }
 
 /// How something is.
@@ -365,5 +378,59 @@ impl Cdr<'_> {
         let mut covariance = [0.0; 9];
         covariance[0] = if holds { 0.0 } else { -1.0 };
         self.doubles(&covariance);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bytes from words of hex digits; `"text"` stands for its own bytes.
+    fn hex(words: &str) -> Vec<u8> {
+        let word = |word: &str| match word.strip_prefix('"') {
+            Some(text) => text.trim_end_matches('"').bytes().collect::<Vec<_>>(),
+            None => {
+                (0..word.len()).step_by(2).map(|i| u8::from_str_radix(&word[i..i + 2], 16).unwrap()).collect()
+            }
+        };
+        words.split_whitespace().flat_map(word).collect()
+    }
+
+    const ZERO: &str = "0000000000000000";
+    const ONE: &str = "000000000000f03f";
+
+    #[test]
+    fn each_frame_of_a_message_begins_where_its_numbers_may() {
+        let at = |frame| Stamped { t: SimTime(3_000_000_258), frame };
+        let frames = [
+            Turned { stamped: at("map"), child: "b", attitude: [0.0, 1.0, -0.0, 0.0] },
+            Turned { stamped: at("b"), child: "cd", attitude: [1.0, 0.0, 0.0, 0.0] },
+        ];
+        let mut bytes = vec![7];
+        transforms(&frames, &mut bytes);
+        // Two; the time, the frame, the child, which leave the first's numbers at 32 and the second's at 112.
+        let first = format!(
+            "03000000 02010000 04000000 \"map\" 00 02000000 \"b\" 00 0000 {ZERO} {ZERO} {ZERO} {ONE} {ZERO} {ZERO} {ZERO}"
+        );
+        let second = format!(
+            "03000000 02010000 02000000 \"b\" 00 0000 03000000 \"cd\" 00 00 {ZERO} {ZERO} {ZERO} {ZERO} {ZERO} {ZERO} {ONE}"
+        );
+        assert_eq!(bytes, hex(&format!("00010000 02000000 {first} {second}")));
+    }
+
+    #[test]
+    fn texts_have_their_bytes_counted_and_end_with_a_zero() {
+        let status = Status {
+            name: "µ".into(),
+            level: 1,
+            message: "a\0b".into(),
+            values: vec![("k".into(), "vw".into())],
+        };
+        let mut bytes = Vec::new();
+        diagnostics(Stamped { t: SimTime(0), frame: "m" }, &[status], &mut bytes);
+        let header = "00010000 00000000 00000000 02000000 \"m\" 00 0000";
+        let status = "01 000000 03000000 c2b5 00 00 02000000 \"a\" 00 0000 01000000 00 000000";
+        let values = "01000000 02000000 \"k\" 00 0000 03000000 \"vw\" 00";
+        assert_eq!(bytes, hex(&format!("{header} 01000000 {status} {values}")));
     }
 }

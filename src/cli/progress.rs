@@ -191,7 +191,7 @@ fn attitudes(progress: &Progress, axes: Axes, width: usize) -> String {
     let angles = |attitude| {
         let Euler { roll, pitch, yaw } = Euler::from_quat(axes.attitude_out(attitude));
         let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::to_degrees);
-        format!("{roll:+7.1}° {pitch:+6.1}° {yaw:+7.1}°")
+        format!("{roll:+6.1}° {pitch:+5.1}° {yaw:+6.1}°")
     };
     let truth = format!("roll, pitch, yaw: true {}", angles(progress.truth));
     let both = progress.estimate.map(|(attitude, _)| format!("{truth}  estimated {}", angles(attitude)));
@@ -224,7 +224,7 @@ mod tests {
             let text = attitudes(&progress, Axes::NedFrd, width);
             assert!(text.chars().count() < width, "{text}");
             assert_eq!(text.contains("estimated"), estimated, "{text}");
-            assert!(text.contains(" -171.9°  -85.9°  -171.9°"), "{text}");
+            assert!(text.contains(" -171.9° -85.9° -171.9°"), "{text}");
         }
     }
 }

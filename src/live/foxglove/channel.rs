@@ -9,17 +9,18 @@
 //! | `/imu/gyro/true` and the like | `geometry_msgs/msg/Vector3Stamped` |
 //! | `/truth`, `/truth/pose` | `sensor_msgs/msg/Imu`, `geometry_msgs/msg/PoseStamped` |
 //! | `/estimate/pose` | `geometry_msgs/msg/PoseStamped` |
-//! | `/tf` | `tf2_msgs/msg/TFMessage` |
+//! | `/tf` | `tf2_msgs/msg/TFMessage`: truth and estimates; `map_ned` in `map`, where nav axes point down |
 //! | `/diagnostics` | `diagnostic_msgs/msg/DiagnosticArray` |
 
 use crate::geometry::{Axes, Vector};
 use crate::live::about::{About, Shown};
 use crate::live::batch::{Batch, Readings};
-use crate::ros::{self, Imu, Kind, Stamped, Status};
+use crate::ros::{self, Imu, Kind, Stamped, Status, Turned};
 use crate::sensor::{SensorKind, Shape};
 use crate::time::SimTime;
 use glam::DVec3;
 use serde_json::json;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// What a channel carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,7 +198,11 @@ impl Channels {
         all.sort_by_key(|(t, ..)| *t);
         for (t, attitude, child) in all {
             let q = self.axes.attitude_out(attitude);
-            ros::transform(self.in_nav(t), child, [q.w, q.x, q.y, q.z], bytes);
+            let body = Turned { stamped: self.in_nav(t), child, attitude: [q.w, q.x, q.y, q.z] };
+            match upright(self.axes, t) {
+                Some(nav) => ros::transforms(&[nav, body], bytes),
+                None => ros::transforms(&[body], bytes),
+            }
             put(t, bytes);
         }
     }
@@ -268,6 +273,14 @@ impl Channels {
     }
 }
 
+/// Nav axes that point down as a viewer's that point up have them: it would show everything upside down.
+fn upright(axes: Axes, t: SimTime) -> Option<Turned<'static>> {
+    let [up, nav] = [Axes::EnuFlu, axes].map(|axes| ros::frames(axes)[0]);
+    // Half a turn about north-east: x and y change places, z changes its sign.
+    let attitude = [0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0];
+    (nav != up).then_some(Turned { stamped: Stamped { t, frame: up }, child: nav, attitude })
+}
+
 fn triad(values: &[Vec<f64>], i: usize) -> Option<[f64; 3]> {
     let [x, y, z] = values else { return None };
     Some([x[i], y[i], z[i]])
@@ -317,7 +330,7 @@ fn offered(about: &About) -> Vec<(String, Kind, What)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Attitude;
+    use crate::geometry::{Attitude, rotate};
     use crate::live::batch::Told;
     use crate::live::thread::gathered;
     use crate::scene::Plan;
@@ -395,6 +408,17 @@ mod tests {
         assert!(all.is_sorted(), "then in that of the channels");
         let estimate = channels.channels.iter().find(|it| it.topic == "/estimate/pose").unwrap();
         assert!(all.contains(&(late.t, estimate.id)));
+    }
+
+    #[test]
+    fn nav_axes_that_point_down_lie_upright_in_those_that_point_up() {
+        let [w, x, y, z] = upright(Axes::NedFrd, SimTime(0)).unwrap().attitude;
+        let turn = glam::DQuat::from_xyzw(x, y, z, w);
+        for ned in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let enu = Axes::EnuFlu.nav_out(Vector::from_vec(ned));
+            assert!((rotate(turn, ned) - enu).length() < 1e-15, "{ned}");
+        }
+        assert!(upright(Axes::EnuFlu, SimTime(0)).is_none());
     }
 
     #[test]
