@@ -20,6 +20,7 @@ const WIDE: usize = 80;
 /// A bar that moves with scene time, where standard error is a terminal that can move it.
 pub struct Bar {
     bar: ProgressBar,
+    style: ProgressStyle,
     is_seen: bool,
     /// The axes in which attitudes are told.
     axes: Axes,
@@ -59,9 +60,10 @@ impl Bar {
             std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|it| it != "dumb");
         let target = if is_seen { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let length = (end < SimTime::FOREVER).then_some((end.0 / MILLIS).max(1) as u64);
-        let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let style = styled(&template);
         Bar {
-            bar: ProgressBar::with_draw_target(length, target).with_style(style),
+            bar: ProgressBar::with_draw_target(length, target).with_style(style.clone()),
+            style,
             is_seen,
             axes: Axes::default(),
             queued: AtomicU64::default(),
@@ -72,11 +74,18 @@ impl Bar {
     /// Somebody has to do something, within so long: a line that counts down, or where nobody sees that a line now and
     /// then.
     pub fn waiting(&self, whom: &str, left: Duration) {
-        let text = format!("waiting for {whom}, {:.0} s left", left.as_secs_f64().ceil());
-        if self.is_seen {
-            return self.bar.set_message(text);
-        }
+        let seconds = left.as_secs_f64().ceil();
+        let text = format!("waiting for {whom}, {seconds:.0} s left");
         let mut waits = self.waits.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.is_seen {
+            if waits.replace((whom.to_string(), left)).is_none() {
+                self.bar.set_style(styled("{wide_msg}"));
+            }
+            let fits = text.chars().count() < Stream::Err.width();
+            // Of a long path the end may go, not the time.
+            let cut = || format!("{seconds:.0} s left, waiting for {whom}");
+            return self.bar.set_message(if fits { text } else { cut() });
+        }
         let is_due =
             |(told, then): &(String, Duration)| told != whom || then.saturating_sub(left) >= PLAIN_BEAT;
         if waits.as_ref().is_none_or(is_due) {
@@ -120,6 +129,9 @@ impl Bar {
     /// Of a live run.
     pub fn live(&self, progress: &Progress) {
         let Progress { t, still, packets, dropped, estimate, .. } = progress;
+        if self.waits.lock().unwrap_or_else(PoisonError::into_inner).take().is_some() {
+            self.bar.set_style(self.style.clone());
+        }
         self.bar.set_prefix(attitudes(progress, self.axes, Stream::Err.width()));
         if *still {
             let text = format!(
@@ -184,6 +196,10 @@ impl Bar {
     pub fn clear(&self) {
         self.bar.finish_and_clear();
     }
+}
+
+fn styled(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 /// Roll, pitch and yaw of the truth, and of the estimate where it fits.

@@ -92,9 +92,6 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
         Ok(played) => played,
         Err(refusal) => return Err(show.fail(refusal)),
     };
-    if let Some(plan) = Arc::get_mut(&mut plan) {
-        plan.set(outcome.settings.iter().map(|it| (it.kind, it.setting.clone(), it.written.clone())));
-    }
     let mut report = outcome.report(&plan, estimator);
     if let Some(received) = received {
         received.add_to(&mut report.sensors, &mut report.links);
@@ -105,6 +102,10 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
         report.failed.push(format!("no attitude came on {to}"));
     }
     let page = show.end(|| ends::run(&report), Some(outcome.played));
+    // Nobody else has the plan any more: who showed it has ended.
+    if let Some(plan) = Arc::get_mut(&mut plan) {
+        plan.set(outcome.settings.iter().map(|it| (it.kind, it.setting.clone(), it.written.clone())));
+    }
     tell(&summary::run(&report, &outcome));
     let told = outcome.attitude.is_some();
     if let Some(target) = target.filter(|target| target.tells == Tells::Nothing && !told) {

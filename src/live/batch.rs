@@ -1,6 +1,5 @@
 //! What has happened since the last look, as data.
 
-use super::board::Heard;
 use crate::geometry::Attitude;
 use crate::motion::Truth;
 use crate::time::SimTime;
@@ -32,6 +31,17 @@ impl Batch {
         readings.t.push(t);
         readings.values.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
     }
+}
+
+/// A value that was heard.
+#[derive(Clone, Debug)]
+pub(super) struct Heard {
+    /// Which of the sensors.
+    pub of: usize,
+    /// Since the first.
+    pub t: SimTime,
+    /// In body axes, or a pressure.
+    pub values: Vec<f64>,
 }
 
 /// An attitude that was told.

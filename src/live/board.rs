@@ -1,6 +1,6 @@
 //! Where whoever runs something puts what happens, and from where it is taken ten times a second.
 
-use super::batch::Told;
+use super::batch::{Heard, Told};
 use super::end::End;
 use super::message::{Link, Notice, seconds};
 use crate::listen;
@@ -38,17 +38,6 @@ impl Phase {
             Phase::Listening => "listening",
         }
     }
-}
-
-/// A value that was heard.
-#[derive(Clone, Debug)]
-pub(super) struct Heard {
-    /// Which of the sensors.
-    pub of: usize,
-    /// Since the first.
-    pub t: SimTime,
-    /// In body axes, or a pressure.
-    pub values: Vec<f64>,
 }
 
 /// What has happened since it was taken last.

@@ -77,6 +77,7 @@ fn all_studies_of_a_scene_write_their_tables_and_charts() {
         "filters.json",
         "filters.svg",
         "manifest.json",
+        "report.html",
         "normals.csv",
         "normals.json",
         "normals.svg",
@@ -124,9 +125,16 @@ fn one_study_writes_its_own_files_and_an_existing_folder_is_refused_before_anyth
     assert!(results["stability"].is_null() && results["quick"] == true, "{results}");
     assert_eq!(
         files(&out),
-        ["accuracy-glance.svg", "accuracy.csv", "accuracy.json", "accuracy.svg", "manifest.json"]
-            .map(String::from)
-            .into()
+        [
+            "accuracy-glance.svg",
+            "accuracy.csv",
+            "accuracy.json",
+            "accuracy.svg",
+            "manifest.json",
+            "report.html"
+        ]
+        .map(String::from)
+        .into()
     );
     let rows = rows(&out.join("accuracy.csv")).1;
     assert_eq!(results["accuracy"].as_array().unwrap().len(), rows.len(), "the same rows for all");
@@ -144,7 +152,9 @@ fn the_study_of_stability_writes_its_own_files() {
     study(&["stability", "--quick", "--out", out.to_str().unwrap()]).assert().success();
     assert_eq!(
         files(&out),
-        ["manifest.json", "stability.csv", "stability.json", "stability.svg"].map(String::from).into()
+        ["manifest.json", "report.html", "stability.csv", "stability.json", "stability.svg"]
+            .map(String::from)
+            .into()
     );
 }
 
@@ -191,7 +201,10 @@ fn the_cost_of_a_scene_is_told_term_by_term() {
     let names: Vec<_> = terms.iter().map(|term| term["term"].as_str().unwrap()).collect();
     assert!(names[0] == "truth" && names.contains(&"white_noise"), "{names:?}");
     assert!(terms.iter().all(|term| term["ns_per_sample"].as_f64().unwrap() > 0.0));
-    assert_eq!(files(&out), ["cost.csv", "cost.json", "cost.svg", "manifest.json"].map(String::from).into());
+    assert_eq!(
+        files(&out),
+        ["cost.csv", "cost.json", "cost.svg", "manifest.json", "report.html"].map(String::from).into()
+    );
     let table = std::fs::read_to_string(out.join("cost.csv")).unwrap();
     assert_eq!(table.lines().next(), Some("term,ns_per_sample"));
     assert_eq!(table.lines().count(), 1 + names.len());
@@ -224,7 +237,8 @@ fn a_scene_is_told_what_it_needs_and_gets_a_leaner_one_that_plays() {
     assert!(line(&["gyro", "range"]).ends_with("below resolution"), "{text}");
     assert!(text.contains("lean.toml has ") && text.contains("ns a nine-axis sample before"), "{text}");
 
-    let names = ["lean.toml", "manifest.json", "parsimony.csv", "parsimony.json", "parsimony.svg"];
+    let names =
+        ["lean.toml", "manifest.json", "report.html", "parsimony.csv", "parsimony.json", "parsimony.svg"];
     assert_eq!(files(&out), names.map(String::from).into());
     let (heading, rows) = rows(&out.join("parsimony.csv"));
     assert_eq!(
@@ -300,6 +314,7 @@ fn filters_are_measured_on_scenes_and_through_what_breaks_them() {
         "filters.json",
         "filters.svg",
         "manifest.json",
+        "report.html",
     ];
     assert_eq!(files(&out), names.map(String::from).into());
     let (table, grid) = (out.join("filters.csv"), out.join("filters-stability.csv"));
