@@ -27,10 +27,8 @@ Examples:
   ratetable run table-1 --to csv@file:readings.csv --speed max
   # to a board on a serial port
   ratetable run mpu-9250 --to mpu@/dev/ttyUSB0,921600
-  # to PX4, QGroundControl beside it
-  ratetable run --to px4@/dev/ttyACM0 --qgc
-  # on a page in a browser
-  ratetable run --live";
+  # to PX4, QGroundControl and a page in a browser beside it
+  ratetable run --to px4@/dev/ttyACM0 --qgc --live";
 
 /// `timing`.
 pub const TIMING: &str = "\

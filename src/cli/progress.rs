@@ -4,7 +4,7 @@ use super::tell;
 use super::terminal::Stream;
 use crate::geometry::{Axes, Euler};
 use crate::listen;
-use crate::session::{LinkProgress, Off, Progress};
+use crate::session::{Event, Off, Progress};
 use crate::time::SimTime;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -71,9 +71,24 @@ impl Bar {
         }
     }
 
+    /// What is told of any run.
+    pub fn event(&self, event: &Event<'_>) {
+        match event {
+            Event::Notice(notice) => self.line(&format!("notice: {notice}")),
+            Event::Ready(name) => self.line(&format!("ready: {name}")),
+            Event::Ground(place) => self.line(&format!("ground station: udp {place}")),
+            Event::Waiting { whom, left } => self.waiting(whom, *left),
+            Event::Links(links) => {
+                self.queued.store(links.iter().map(|link| link.queued).sum(), Ordering::Relaxed)
+            }
+            Event::Progress(progress) => self.live(progress),
+            _ => {}
+        }
+    }
+
     /// Somebody has to do something, within so long: a line that counts down, or where nobody sees that a line now and
     /// then.
-    pub fn waiting(&self, whom: &str, left: Duration) {
+    fn waiting(&self, whom: &str, left: Duration) {
         let seconds = left.as_secs_f64().ceil();
         let text = format!("waiting for {whom}, {seconds:.0} s left");
         let mut waits = self.waits.lock().unwrap_or_else(PoisonError::into_inner);
@@ -92,11 +107,6 @@ impl Bar {
             *waits = Some((whom.to_string(), left));
             self.line(&text);
         }
-    }
-
-    /// What waits for links.
-    pub fn links(&self, links: &[LinkProgress]) {
-        self.queued.store(links.iter().map(|link| link.queued).sum(), Ordering::Relaxed);
     }
 
     /// Of steps of which nobody knows how long they take.
@@ -127,7 +137,7 @@ impl Bar {
     }
 
     /// Of a live run.
-    pub fn live(&self, progress: &Progress) {
+    fn live(&self, progress: &Progress) {
         let Progress { t, still, packets, dropped, estimate, .. } = progress;
         if self.waits.lock().unwrap_or_else(PoisonError::into_inner).take().is_some() {
             self.bar.set_style(self.style.clone());

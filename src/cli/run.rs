@@ -313,26 +313,18 @@ fn play(job: Job, demonstration: bool, show: &Show) -> Result<(Outcome, Option<R
     let (mut firmware, mut held) = (None, false);
     let outcome = session::run(job, &mut |event| {
         show.event(&event);
+        bar.event(&event);
         match event {
-            Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
-            Event::Ready(name) => {
-                bar.line(&format!("ready: {name}"));
-                if demonstration {
-                    let path = name.split_once('@').map_or(name, |(_, path)| path);
-                    bar.line("demonstration: a driver and an AHRS (VQF) open that pty as firmware would");
-                    firmware = Some(Firmware::start(path, &plan));
-                }
+            Event::Ready(name) if demonstration => {
+                let path = name.split_once('@').map_or(name, |(_, path)| path);
+                bar.line("demonstration: a driver and an AHRS (VQF) open that pty as firmware would");
+                firmware = Some(Firmware::start(path, &plan));
             }
-            Event::Ground(place) => bar.line(&format!("ground station: udp {place}")),
-            Event::Waiting { whom, left } => bar.waiting(whom, left),
-            Event::Links(links) => bar.links(links),
             Event::Still => {
                 held = true;
                 bar.line("holding still until the other side is ready");
             }
             Event::Started if held => bar.line("the scene starts"),
-            Event::Started => {}
-            Event::Progress(progress) => bar.live(&progress),
             _ => {}
         }
     });

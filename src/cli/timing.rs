@@ -229,19 +229,12 @@ fn stream(
     let mut reader = None;
     let outcome = session::run(job, &mut |event| {
         show.event(&event);
-        match event {
-            Event::Notice(notice) => bar.line(&format!("notice: {notice}")),
-            Event::Ready(name) => {
-                bar.line(&format!("ready: {name}"));
-                if let Some(arrivals) = arrivals.take() {
-                    let path = name.split_once('@').map_or(name, |(_, path)| path);
-                    reader = Some(Reader::start(path.into(), arrivals));
-                }
-            }
-            Event::Waiting { whom, left } => bar.waiting(whom, left),
-            Event::Links(links) => bar.links(links),
-            Event::Progress(progress) => bar.live(&progress),
-            _ => {}
+        bar.event(&event);
+        if let Event::Ready(name) = event
+            && let Some(arrivals) = arrivals.take()
+        {
+            let path = name.split_once('@').map_or(name, |(_, path)| path);
+            reader = Some(Reader::start(path.into(), arrivals));
         }
     });
     bar.clear();
