@@ -23,12 +23,16 @@ pub struct LiveArguments {
 }
 
 /// What is shown, if anybody wants it.
-pub struct Show(Option<Live>);
+pub struct Show {
+    live: Option<Live>,
+    /// Whether a page is wanted in the end.
+    keeps: bool,
+}
 
 impl Show {
     /// Nobody wants it.
     pub fn none() -> Show {
-        Show(None)
+        Show { live: None, keeps: false }
     }
 
     /// Shows this at an address, and keeps it for a page where that is wanted; tells where to look.
@@ -43,12 +47,12 @@ impl Show {
         if let Some(url) = live.url() {
             tell(&format!("live: {url}"));
         }
-        Ok(Show(Some(live)))
+        Ok(Show { live: Some(live), keeps })
     }
 
     /// Where to put what happens, if anybody wants it.
     pub fn board(&self) -> Option<&Board> {
-        self.0.as_ref().map(Live::board)
+        self.live.as_ref().map(Live::board)
     }
 
     /// Shows an event of a run.
@@ -58,9 +62,10 @@ impl Show {
         }
     }
 
-    /// Shows what came of it, of a scene that was played up to `until`; the page, if anything was shown.
+    /// Shows what came of it, of a scene that was played up to `until`; the page, where one is wanted.
     pub fn end(self, end: impl FnOnce() -> End, until: Option<SimTime>) -> Option<String> {
-        self.0.map(|live| live.end(end(), until).report())
+        let ended = self.live?.end(end(), until);
+        self.keeps.then(|| ended.report())
     }
 
     /// Shows why it did not come to an end.
