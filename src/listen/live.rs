@@ -128,6 +128,8 @@ impl Ear<'_> {
             }
         }
         self.meter.finish();
+        let elapsed = first.map_or(Duration::ZERO, |first: Instant| first.elapsed());
+        on(Event::Progress(Progress { elapsed, meter: &self.meter, rates: &recent.rates }));
         if !self.live {
             on(Event::Notice(recording(&self.meter).into()));
         }

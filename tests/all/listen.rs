@@ -294,6 +294,16 @@ fn the_folder_holds_the_report_and_the_chart() {
     assert_eq!((code, &written), (0, &report));
     let chart = std::fs::read_to_string(format!("{out}/intervals.svg")).unwrap();
     assert!(chart.starts_with("<svg") && chart.contains("gyro") && chart.contains("mag"));
+    let page = std::fs::read_to_string(format!("{out}/report.html")).unwrap();
+    let (_, messages) = page.split_once("id=\"messages\">").unwrap();
+    let messages: Value = serde_json::from_str(messages.split_once("</script>").unwrap().0).unwrap();
+    let link = &messages[1]["links"][0];
+    for field in ["packets", "bytes"] {
+        assert_eq!(link[field], report["links"][0][field], "the page has all that came: {link}");
+    }
+    let sensors = messages[0]["sensors"].as_array().unwrap();
+    assert_eq!(sensors.len(), report["sensors"].as_array().unwrap().len());
+    assert!(messages[1]["readings"][0]["t"].as_array().unwrap().len() > 1, "and what it said");
     let (code, _, text) = whole(&["listen", "mpu@tcpin:0", "--wait", "1s", "--out", &out]);
     assert!(code == 2 && text.contains("--force"), "{text}");
 }
