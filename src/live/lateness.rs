@@ -16,7 +16,7 @@ const MOST: usize = 600;
 /// Counts by lateness, in parts that are an eighth of a doubling wide: a percentile is within 9 %.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Bins {
-    counts: Vec<u32>,
+    counts: Vec<u64>,
     /// The greatest, ns.
     max: i64,
 }
@@ -51,13 +51,13 @@ impl Bins {
     }
 
     /// How many in each part.
-    pub(super) fn counts(&self) -> &[u32] {
+    pub(super) fn counts(&self) -> &[u64] {
         &self.counts
     }
 
     /// How many in all.
     pub(super) fn count(&self) -> u64 {
-        self.counts.iter().map(|count| u64::from(*count)).sum()
+        self.counts.iter().sum()
     }
 
     /// What a share of the samples is not later than, µs: the end of the part that it lies in, the greatest at most.
@@ -65,7 +65,7 @@ impl Bins {
         let wanted = libm::ceil(share * self.count() as f64) as u64;
         let mut seen = 0;
         let part = self.counts.iter().position(|count| {
-            seen += u64::from(*count);
+            seen += *count;
             seen >= wanted
         });
         part.map_or(self.max as f64, Bins::end).min(self.max as f64) * 1e-3

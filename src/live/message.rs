@@ -315,7 +315,7 @@ pub(super) struct LateHistogram {
 
 #[derive(Serialize)]
 struct Counts {
-    n: Vec<u32>,
+    n: Vec<u64>,
 }
 
 impl LateHistogram {
