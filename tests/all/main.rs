@@ -10,6 +10,7 @@ mod circles;
 mod clocks;
 mod cluster;
 mod controllers;
+mod examples;
 mod faults;
 mod formats;
 mod generate;

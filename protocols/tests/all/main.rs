@@ -3,6 +3,7 @@
 
 mod c_header;
 mod common;
+mod examples;
 mod mavlink_crate;
 mod properties;
 mod vectors;
