@@ -55,11 +55,11 @@ use crate::time::SimTime;
 use door::Door;
 use rtrb::Consumer;
 use std::io::{self, ErrorKind};
-use std::net::TcpListener;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use story::Story;
 use thread::Task;
+use tokio::net::TcpListener;
 
 /// A scene that is shown while it plays.
 pub struct Scene {
@@ -107,7 +107,10 @@ impl Live {
     /// # Errors
     /// The address cannot be served on.
     pub fn start(about: About, scene: Option<Scene>, at: Option<At>, keeps: bool) -> Result<Live, LiveError> {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let inside = runtime.enter();
         let opened = at.map(open).transpose()?;
+        drop(inside);
         let url = opened.as_ref().map(|(_, door)| url(door));
         let session = token()?;
         let board = Arc::<Board>::default();
@@ -115,6 +118,7 @@ impl Live {
             story: Story::new(about, scene.as_ref().map(|scene| scene.plan.clone())),
             scene,
             board: board.clone(),
+            runtime,
             listening: opened.map(|(listener, door)| (listener, door, session)),
             keeps,
         };
@@ -169,14 +173,14 @@ pub fn page(about: &About, paths: &Paths, end: &End) -> String {
 
 /// Serves on this address; elsewhere than on loopback, who comes needs a token.
 fn open(at: At) -> Result<(TcpListener, Door), LiveError> {
-    let listener = TcpListener::bind(at.0).map_err(|source| match source.kind() {
+    let listener = std::net::TcpListener::bind(at.0).map_err(|source| match source.kind() {
         ErrorKind::AddrInUse => LiveError::Taken(at),
         _ => LiveError::Address { at, source },
     })?;
     listener.set_nonblocking(true)?;
     let here = listener.local_addr()?;
     let token = if at.is_loopback() { None } else { Some(token()?) };
-    Ok((listener, Door { at: here, token }))
+    Ok((TcpListener::from_std(listener)?, Door { at: here, token }))
 }
 
 /// Where to look on: a URL.

@@ -17,7 +17,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::TcpListener;
-use tokio::task::LocalSet;
+use tokio::runtime::Runtime;
+use tokio::task::{LocalSet, spawn_local};
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep};
 
 /// Between two looks at what has happened.
@@ -38,24 +39,20 @@ pub(super) struct Task {
     pub story: Story,
     pub scene: Option<Scene>,
     pub board: Arc<Board>,
+    pub runtime: Runtime,
     /// Where viewers come, if they may, and what tells this run from others.
-    pub listening: Option<(std::net::TcpListener, Door, String)>,
+    pub listening: Option<(TcpListener, Door, String)>,
     /// Whether the readings of the whole run are wanted in the end.
     pub keeps: bool,
 }
 
 /// Shows what happens until the end has been put on the board; then everything.
 pub(super) fn run(task: Task) -> Story {
-    let Task { story, scene, board, listening, keeps } = task;
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let Task { story, scene, board, runtime, listening, keeps } = task;
     let (plan, records) = scene.map_or((None, None), |scene| (Some((scene.plan, scene.end)), scene.records));
     let reel = plan.as_ref().map(|(plan, end)| Reel::new(plan, *end, Vec::new()));
     let show = Show { story, reel, records, recorded: VecDeque::new(), ticks: 0, board, keeps };
-    match runtime {
-        Ok(runtime) => LocalSet::new().block_on(&runtime, show.go(listening)),
-        // Nobody can be let in: what happens is taken in all the same.
-        Err(_) => show.alone(),
-    }
+    LocalSet::new().block_on(&runtime, show.go(listening))
 }
 
 struct Show<'a> {
@@ -69,22 +66,10 @@ struct Show<'a> {
 }
 
 impl Show<'_> {
-    fn alone(mut self) -> Story {
-        while self.story.end.is_none() {
-            std::thread::sleep(TICK);
-            self.take();
-        }
-        self.complete();
-        self.story
-    }
-
-    async fn go(mut self, listening: Option<(std::net::TcpListener, Door, String)>) -> Story {
+    async fn go(mut self, listening: Option<(TcpListener, Door, String)>) -> Story {
         let hub = listening.map(|(listener, door, session)| {
             let hub = Rc::new(Hub::new(&self.story.about, session));
-            // It was made for this: it cannot fail but for want of memory.
-            if let Ok(listener) = TcpListener::from_std(listener) {
-                tokio::task::spawn_local(serve(listener, Rc::new(door), hub.clone()));
-            }
+            spawn_local(serve(listener, Rc::new(door), hub.clone()));
             hub
         });
         let mut ticks = interval(TICK);
