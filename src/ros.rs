@@ -410,7 +410,7 @@ mod tests {
         transforms(&frames, &mut bytes);
         // Two; the time, the frame, the child, which leave the first's numbers at 32 and the second's at 112.
         let first = format!(
-            "03000000 02010000 04000000 \"map\" 00 02000000 \"b\" 00 0000 {ZERO} {ZERO} {ZERO} {ONE} {ZERO} {ZERO} {ZERO}"
+            "03000000 02010000 04000000 \"map\" 00 02000000 \"b\" 00 000000000000 {ZERO} {ZERO} {ZERO} {ONE} {ZERO} {ZERO} {ZERO}"
         );
         let second = format!(
             "03000000 02010000 02000000 \"b\" 00 0000 03000000 \"cd\" 00 00 {ZERO} {ZERO} {ZERO} {ZERO} {ZERO} {ZERO} {ONE}"
