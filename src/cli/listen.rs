@@ -3,6 +3,7 @@
 use super::progress::Bar;
 use super::show::heard::Clocks;
 use super::show::{LiveArguments, PAGE, Show, ends};
+use super::terminal::Stream;
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::dataset::{self, Holds};
 use crate::link::{self, Address};
@@ -97,7 +98,7 @@ pub fn listen(arguments: &Arguments) -> Result<Verdict, Refusal> {
     report.links[0].attitudes = arguments.attitude.then_some(heard.told.len() as u64);
     report.judge(&arguments.limit)?;
     let page = show.end(|| ends::heard(&report), None);
-    tell(&summary::heard(&report, heard.interrupted));
+    tell(&Stream::Err.fold(&summary::heard(&report, heard.interrupted)));
     if let Some(dir) = &arguments.out {
         let json = serde_json::to_string_pretty(&report)? + "\n";
         let chart = intervals(&arguments.from, &heard.meter, &report.sensors);

@@ -5,6 +5,7 @@ use super::demo::{Firmware, Received};
 use super::generate::REPORT;
 use super::progress::Bar;
 use super::show::{self, LiveArguments, PAGE, Show, ends};
+use super::terminal::Stream;
 use super::{Refusal, Verdict, options, say, summary, tell};
 use crate::bus;
 use crate::clock::WallClock;
@@ -106,7 +107,7 @@ pub fn run(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if let Some(plan) = Arc::get_mut(&mut plan) {
         plan.set(outcome.settings.iter().map(|it| (it.kind, it.setting.clone(), it.written.clone())));
     }
-    tell(&summary::run(&report, &outcome));
+    tell(&Stream::Err.fold(&summary::run(&report, &outcome)));
     let told = outcome.attitude.is_some();
     if let Some(target) = target.filter(|target| target.tells == Tells::Nothing && !told) {
         tell(&format!(

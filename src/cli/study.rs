@@ -11,6 +11,7 @@ mod picture;
 mod stability;
 
 use super::show::PAGE;
+use super::terminal::Stream;
 use super::{Refusal, Verdict, say, tell};
 use crate::dataset::{self, Holds};
 use crate::live::{self, About, End, Paths};
@@ -101,7 +102,8 @@ pub fn study(arguments: &Arguments) -> Result<Verdict, Refusal> {
     if arguments.json {
         say(&outcome::json(request.quick, &outcomes)?)?;
     } else {
-        say(&outcomes.iter().map(|outcome| outcome.text.as_str()).collect::<Vec<_>>().join("\n"))?;
+        let text = outcomes.iter().map(|outcome| outcome.text.as_str()).collect::<Vec<_>>().join("\n");
+        say(&Stream::Out.fold(&text))?;
     }
     Ok(Verdict::Fine)
 }

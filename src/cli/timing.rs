@@ -10,6 +10,7 @@ use super::clash::{self, Besides};
 use super::progress::Bar;
 use super::run::written_to_the_end;
 use super::show::{LiveArguments, PAGE, Show};
+use super::terminal::Stream;
 use super::{Refusal, Verdict, options, say, tell};
 use crate::clock::WallClock;
 use crate::dataset::{self, DatasetError, Folder, Holds};
@@ -103,7 +104,7 @@ pub fn timing(arguments: &Arguments) -> Result<Verdict, Refusal> {
     measured.outcome.judge(&mut report.run, &[], false)?;
     report.judge(&limits)?;
     let page = show.end(|| results::end(&report), Some(measured.outcome.played));
-    tell(&results::text(&report, measured.outcome.interrupted));
+    tell(&Stream::Err.fold(&results::text(&report, measured.outcome.interrupted)));
     if let (Some(folder), Some(dir)) = (folder, &arguments.out) {
         let picture = charts::timing(&report, &measured.ledger, &measured.bare());
         folder.put("timing.svg", picture.as_bytes())?;
