@@ -71,7 +71,7 @@ impl Bar {
         }
     }
 
-    /// What is told of any run.
+    /// Shows what every run can tell: notices, open links, waits, progress.
     pub fn event(&self, event: &Event<'_>) {
         match event {
             Event::Notice(notice) => self.line(&format!("notice: {notice}")),

@@ -121,9 +121,8 @@ impl Hub {
         }
         let news = Utf8Bytes::from(story.news());
         for (viewer, _) in known {
-            match viewer.lost() {
-                0 => {}
-                lost => viewer.put(Message::text(format!(r#"{{"kind":"more","lost":{lost}}}"#))),
+            if let Some(lost) = viewer.lost() {
+                viewer.put(Message::text(format!(r#"{{"kind":"more","lost":{lost}}}"#)));
             }
             viewer.put(Message::Text(news.clone()));
         }

@@ -9,7 +9,7 @@ use super::message::{
     Attitudes, Begin, Errors, Late, LateHistogram, Link, More, Notice, Of, Rates, Values, seconds,
 };
 use super::strip::Strip;
-use super::track::{Fix, Track};
+use super::track::{Fix, Track, halve};
 use crate::geometry::{Attitude, AttitudeError};
 use crate::scene::Plan;
 use crate::session::Record;
@@ -156,11 +156,7 @@ impl Story {
         for list in [&mut rates.kept, &mut rates.fresh] {
             list.push((t, hz));
             if list.len() > KEPT {
-                let mut i = 0;
-                list.retain(|_| {
-                    i += 1;
-                    i % 2 == 1
-                });
+                halve(list);
             }
         }
     }

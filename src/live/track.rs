@@ -38,11 +38,7 @@ impl Track {
         }
         self.count += 1;
         if self.fixes.len() > self.most {
-            let mut i = 0;
-            self.fixes.retain(|_| {
-                i += 1;
-                i % 2 == 1
-            });
+            halve(&mut self.fixes);
             self.every *= 2;
         }
     }
@@ -60,6 +56,15 @@ impl Track {
         *self = Track::new(self.most);
         fixes
     }
+}
+
+/// Leaves every second one of a list, from the first on.
+pub(super) fn halve<T>(list: &mut Vec<T>) {
+    let mut stays = false;
+    list.retain(|_| {
+        stays = !stays;
+        stays
+    });
 }
 
 #[cfg(test)]

@@ -24,8 +24,9 @@ pub(super) struct Viewer {
     pub kind: Kind,
     waiting: RefCell<VecDeque<Message>>,
     bytes: Cell<usize>,
-    /// Messages that it was too slow for, since it was told last.
+    /// Messages that it was too slow for, and how many of them it was told of.
     lost: Cell<u64>,
+    told: Cell<u64>,
     /// Nothing more comes.
     over: Cell<bool>,
     more: Notify,
@@ -39,6 +40,7 @@ impl Viewer {
             waiting: RefCell::default(),
             bytes: Cell::default(),
             lost: Cell::default(),
+            told: Cell::default(),
             over: Cell::default(),
             more: Notify::new(),
         }
@@ -57,9 +59,10 @@ impl Viewer {
         self.more.notify_one();
     }
 
-    /// How many messages it was too slow for since this was asked last.
-    pub(super) fn lost(&self) -> u64 {
-        self.lost.take()
+    /// How many messages it was too slow for so far; `None` where that is what it was told.
+    pub(super) fn lost(&self) -> Option<u64> {
+        let lost = self.lost.get();
+        (self.told.replace(lost) != lost).then_some(lost)
     }
 
     /// Nothing more comes: it is let go once it has everything.
@@ -102,13 +105,13 @@ mod tests {
     fn a_slow_viewer_loses_its_own_oldest_and_they_are_counted() {
         let viewer = Viewer::new(Kind::Page(Cell::new(false)));
         (0..MESSAGES + 10).for_each(|i| viewer.put(Message::text(i.to_string())));
-        assert_eq!((viewer.lost(), viewer.lost()), (10, 0), "told once");
+        assert_eq!((viewer.lost(), viewer.lost()), (Some(10), None), "told once");
         let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
         let first = runtime.block_on(viewer.next()).unwrap();
         assert_eq!(first.to_text().unwrap(), "10");
         // One that is longer than all the room there is gets through by itself.
         viewer.put(Message::text("x".repeat(2 * BYTES)));
-        assert_eq!((viewer.lost(), viewer.waiting.borrow().len()), (MESSAGES as u64 - 1, 1));
+        assert_eq!((viewer.lost(), viewer.waiting.borrow().len()), (Some(MESSAGES as u64 + 9), 1), "in all");
         assert!(!viewer.is_done());
         viewer.finish();
         assert!(runtime.block_on(viewer.next()).is_some() && viewer.is_done());
